@@ -24,14 +24,16 @@ namespace {
 
 Image readColours(const std::filesystem::path& file) {
     Image picture = readPicture(file);
-    check(picture.channels >= 3, "{}: number of channels is {}, must be 3 or more", file.string(), picture.channels);
+    check(picture.channels >= 3, "{}: number of channels is {}, must be 3 or more", file.string(),
+          picture.channels);
     return picture;
 }
 
 std::pair<Image, Image> readBoth(const std::filesystem::path& first, const std::filesystem::path& second) {
     std::pair<Image, Image> both{readColours(first), readColours(second)};
     const glm::uvec2 a_px = both.first.size_px, b_px = both.second.size_px;
-    check(a_px == b_px, "{}: has {}x{} pixels, must have {}x{} like {}", second.string(), b_px.x, b_px.y, a_px.x, a_px.y, first.string());
+    check(a_px == b_px, "{}: has {}x{} pixels, must have {}x{} like {}", second.string(), b_px.x, b_px.y,
+          a_px.x, a_px.y, first.string());
     return both;
 }
 
@@ -72,7 +74,8 @@ void compareFrames(const std::filesystem::path& first, const std::filesystem::pa
     }
     const Difference mean{.values = 1, .mean_square = squares / static_cast<double>(pictures)};
     const double change = changes_a == changes_b ? 1.0 : std::sqrt(changes_a / changes_b);
-    fmt::print("pictures {}\npsnr {:.6f}\npsnr_least {:.6f}\nchange {:.6f}\n", pictures, mean.psnrDb(), worst.psnrDb(), change);
+    fmt::print("pictures {}\npsnr {:.6f}\npsnr_least {:.6f}\nchange {:.6f}\n", pictures, mean.psnrDb(),
+               worst.psnrDb(), change);
 }
 
 }  // namespace
@@ -83,9 +86,12 @@ void runCompare(const CompareOptions& options) {
         return;
     }
     const auto [a, b] = readBoth(options.first, options.second);
-    const std::optional<Lpips> lpips = options.lpips_weights.empty() ? std::nullopt : std::optional<Lpips>(options.lpips_weights);
+    const std::optional<Lpips> lpips =
+        options.lpips_weights.empty() ? std::nullopt : std::optional<Lpips>(options.lpips_weights);
     std::string scores;  // printed together or not at all
-    const auto add = [&](const char* name, double value) { scores += fmt::format("{} {:.6f}\n", name, value); };
+    const auto add = [&](const char* name, double value) {
+        scores += fmt::format("{} {:.6f}\n", name, value);
+    };
     {
         ProgressLine progress("comparing");
         add("psnr", compare(a, b).psnrDb());

@@ -17,16 +17,18 @@ namespace {
 void cropScene(const ConvertOptions& options, Scene& scene, LoadNotes& notes) {
     const std::size_t before = scene.size();
     keepWithin(scene, glm::dvec3(*options.crop) - scene.origin, options.crop->w);
-    check(scene.size() > 0, "{}: none of its {} splats lies within --crop {},{},{},{}", options.scene, before, options.crop->x,
-          options.crop->y, options.crop->z, options.crop->w);
-    notes.lines.push_back(fmt::format("{} of {} splats lie within the sphere of --crop", scene.size(), before));
+    check(scene.size() > 0, "{}: none of its {} splats lies within --crop {},{},{},{}", options.scene, before,
+          options.crop->x, options.crop->y, options.crop->z, options.crop->w);
+    notes.lines.push_back(
+        fmt::format("{} of {} splats lie within the sphere of --crop", scene.size(), before));
 }
 
 void thinOutScene(const ConvertOptions& options, const SceneTarget& target, Scene& scene, LoadNotes& notes) {
     const std::size_t before = scene.size();
     JudgedScene judged(options, scene);
     scene = judged.keep(judged.countOf(*options.keep, target));
-    notes.lines.push_back(fmt::format("{} of {} splats are kept, those that show most", scene.size(), before));
+    notes.lines.push_back(
+        fmt::format("{} of {} splats are kept, those that show most", scene.size(), before));
 }
 
 // Of a file, or of everything beside it in its folder.
@@ -46,7 +48,8 @@ void runConvert(const ConvertOptions& options) {
     const bool is_streamed = options.isStreamed();
     const SceneTarget& target = findSceneTarget(is_streamed ? "chunk.sog" : options.out);
     const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
-    check(is_streamed || std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
+    check(is_streamed || std::filesystem::is_directory(folder),
+          "{}: cannot be written, {} must be a directory", out, folder.string());
 
     LoadNotes notes;
     const auto load = [&] {
@@ -64,8 +67,8 @@ void runConvert(const ConvertOptions& options) {
         target.write(written.sample, out, ProgressLine("writing " + out).progress());
     }
     const Scene& scene = written.sample;
-    const std::string what =
-        fmt::format("{} splats ({}), SH degree {}", written.splats, scene.isGaussian3d() ? "3D Gaussians" : "discs", scene.sh_degree);
+    const std::string what = fmt::format("{} splats ({}), SH degree {}", written.splats,
+                                         scene.isGaussian3d() ? "3D Gaussians" : "discs", scene.sh_degree);
     const std::string loses = target.describeLoss(scene);
     fmt::print("{}: {}, {} bytes\n  loses: {}\n", out, what, bytesWritten(options), loses);
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }

@@ -83,7 +83,8 @@ Survey surveyParts(const SceneParts& parts, std::uint64_t count, const Progress&
 
 }  // namespace
 
-WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load, LoadNotes& notes) {
+WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load,
+                          LoadNotes& notes) {
     StreamedWriteSettings files;
     if (options.chunk_splats != 0) { files.chunk_splats = options.chunk_splats; }
     StreamedWriter writer(options.out, files);
@@ -94,7 +95,9 @@ WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Sce
             InputFile file(options.scene);
             readPlyParts(file, kPartSplats, notes, [&](Scene part) {
                 drawAs(options.load, part, notes);
-                if (options.crop) { keepWithin(part, glm::dvec3(*options.crop) - part.origin, options.crop->w); }
+                if (options.crop) {
+                    keepWithin(part, glm::dvec3(*options.crop) - part.origin, options.crop->w);
+                }
                 take(std::move(part));
             });
             file.requireUnchanged();

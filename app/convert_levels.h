@@ -16,6 +16,7 @@ struct WrittenLevels {
 
 // `load` gives the scene. A PLY file with more splats than a block of writeSceneLevels is instead read in
 // parts, twice, unless the options ask for fewer of its splats.
-WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load, LoadNotes& notes);
+WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load,
+                          LoadNotes& notes);
 
 }  // namespace binosplat

@@ -33,7 +33,8 @@ void tagFilm(const fs::path& path, const FilmTags& tags) {
         };
         size = number(0, 4);
         if (size == 1) { size = number(8, 8); }  // too long for four bytes
-        check(file.good() && size >= 8 && size <= end - begin, "{}: cannot be read, must be an MP4", path.string());
+        check(file.good() && size >= 8 && size <= end - begin, "{}: cannot be read, must be an MP4",
+              path.string());
         if (begin + size == end) { break; }
     }
     std::string moov(size, '\0');
@@ -61,7 +62,9 @@ void requireFfmpeg() {
     try {
         runs = runProgram({kFfmpeg, "-version"}, folder.path() / "log");
     } catch (const Error&) {}
-    check(runs, "--video needs the program ffmpeg, which cannot be run: install it (on Debian: apt install ffmpeg)");
+    check(
+        runs,
+        "--video needs the program ffmpeg, which cannot be run: install it (on Debian: apt install ffmpeg)");
 }
 
 FilmTags filmTags(const RenderOptions& options) {
@@ -72,7 +75,8 @@ FilmTags filmTags(const RenderOptions& options) {
             panorama ? std::optional(panorama->width_rad) : std::nullopt};
 }
 
-void writeFilm(const fs::path& folder, const std::string& pattern, const fs::path& film, double rate_hz, const FilmTags& tags) {
+void writeFilm(const fs::path& folder, const std::string& pattern, const fs::path& film, double rate_hz,
+               const FilmTags& tags) {
     const fs::path log = film.parent_path() / ".ffmpeg";
     // The colours of high-definition television; a quality near what a careful eye can tell apart; colour at
     // half resolution, as players expect.

@@ -17,7 +17,7 @@ FilmTags filmTags(const RenderOptions& options);
 
 // Makes `film`, an MP4, from the pictures `pattern` in `folder`, in which %06d stands for their numbers from
 // 0 on. Throws Error with ffmpeg's own message.
-void writeFilm(const std::filesystem::path& folder, const std::string& pattern, const std::filesystem::path& film, double rate_hz,
-               const FilmTags& tags);
+void writeFilm(const std::filesystem::path& folder, const std::string& pattern,
+               const std::filesystem::path& film, double rate_hz, const FilmTags& tags);
 
 }  // namespace binosplat

@@ -24,8 +24,10 @@ std::vector<Eye> eyesOfCameras(const std::string& file, const Scene& scene) {
     std::vector<Eye> eyes;
     for (std::size_t i = 0; i < count; ++i) {
         const Eye& eye = cameras[i * cameras.size() / count].eye;
-        const double scale = std::min(1.0, static_cast<double>(kJudgingSidePx) / std::max(eye.size_px.x, eye.size_px.y));
-        eyes.push_back(resize(eye, glm::max(glm::uvec2(glm::round(scale * glm::dvec2(eye.size_px))), glm::uvec2(1))));
+        const double scale =
+            std::min(1.0, static_cast<double>(kJudgingSidePx) / std::max(eye.size_px.x, eye.size_px.y));
+        eyes.push_back(
+            resize(eye, glm::max(glm::uvec2(glm::round(scale * glm::dvec2(eye.size_px))), glm::uvec2(1))));
     }
     return eyes;
 }
@@ -34,7 +36,8 @@ constexpr int kMostTries = 6;
 constexpr double kAlmost = 0.95;  // of the size: close enough
 
 // How many splats make a file of that size, or slightly less: found by writing them unchanged.
-std::uint64_t countThatFits(const Scene& scene, const ThinOut& thin_out, double bytes, const SceneTarget& target) {
+std::uint64_t countThatFits(const Scene& scene, const ThinOut& thin_out, double bytes,
+                            const SceneTarget& target) {
     const TemporaryFolder folder("binosplat-keep", "to see how many splats fit into a file");
     const std::string file = (folder.path() / "some").string() + target.extension;
     double count = static_cast<double>(scene.size()), fits = 0.0;
@@ -42,7 +45,9 @@ std::uint64_t countThatFits(const Scene& scene, const ThinOut& thin_out, double 
         target.write(pickSplats(scene, thin_out.choose(static_cast<std::uint64_t>(count))), file, {});
         const auto size = static_cast<double>(std::filesystem::file_size(file));
         if (size <= bytes) { fits = std::max(fits, count); }
-        if (size <= bytes && (size >= kAlmost * bytes || count >= static_cast<double>(scene.size()))) { break; }
+        if (size <= bytes && (size >= kAlmost * bytes || count >= static_cast<double>(scene.size()))) {
+            break;
+        }
         count = std::min(std::floor(count * 0.985 * bytes / size), static_cast<double>(scene.size()));
     }
     return static_cast<std::uint64_t>(fits);
@@ -54,7 +59,8 @@ std::vector<Eye> judgingEyes(const ConvertOptions& options, const Scene& scene) 
     return options.cameras_file.empty() ? standingEyes(scene) : eyesOfCameras(options.cameras_file, scene);
 }
 
-JudgedScene::JudgedScene(const ConvertOptions& options, const Scene& scene) : scene_(scene), context_({.device = options.device}) {
+JudgedScene::JudgedScene(const ConvertOptions& options, const Scene& scene)
+    : scene_(scene), context_({.device = options.device}) {
     thin_out_ = std::make_unique<ThinOut>(context_, scene, judgingEyes(options, scene), usualNear(scene),
                                           ProgressLine("judging " + options.scene).progress());
 }
@@ -62,12 +68,17 @@ JudgedScene::JudgedScene(const ConvertOptions& options, const Scene& scene) : sc
 std::uint64_t JudgedScene::countOf(const Keep& keep, const SceneTarget& target) const {
     const auto all = static_cast<double>(scene_.size());
     if (keep.unit == Keep::kSplats) { return static_cast<std::uint64_t>(std::min(keep.amount, all)); }
-    if (keep.unit == Keep::kShare) { return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(keep.amount * all))); }
+    if (keep.unit == Keep::kShare) {
+        return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(keep.amount * all)));
+    }
     const std::uint64_t count = countThatFits(scene_, *thin_out_, keep.amount, target);
-    check(count > 0, "--keep is {} bytes, too few for a single splat of {} in {}", keep.amount, scene_.name, target.extension);
+    check(count > 0, "--keep is {} bytes, too few for a single splat of {} in {}", keep.amount, scene_.name,
+          target.extension);
     return count;
 }
 
-Scene JudgedScene::keep(std::uint64_t count) { return thin_out_->keep(count, ProgressLine("fitting the kept splats").progress()); }
+Scene JudgedScene::keep(std::uint64_t count) {
+    return thin_out_->keep(count, ProgressLine("fitting the kept splats").progress());
+}
 
 }  // namespace binosplat

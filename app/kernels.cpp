@@ -35,9 +35,11 @@ std::string nameOf(const KernelVariant& variant) {
 // By the driver's own names.
 Json statisticsOf(const Context& context, const Kernel& kernel) {
     Json statistics = Json::object();
-    const auto executables = context.device().getPipelineExecutablePropertiesKHR(vk::PipelineInfoKHR(kernel.pipeline()));
+    const auto executables =
+        context.device().getPipelineExecutablePropertiesKHR(vk::PipelineInfoKHR(kernel.pipeline()));
     for (std::uint32_t i = 0; i < executables.size(); ++i) {
-        for (const auto& one : context.device().getPipelineExecutableStatisticsKHR(vk::PipelineExecutableInfoKHR(kernel.pipeline(), i))) {
+        for (const auto& one : context.device().getPipelineExecutableStatisticsKHR(
+                 vk::PipelineExecutableInfoKHR(kernel.pipeline(), i))) {
             Json& value = statistics[one.name.data()];
             using Format = vk::PipelineExecutableStatisticFormatKHR;
             if (one.format == Format::eBool32) { value = one.value.b32 == VK_TRUE; }
@@ -53,9 +55,13 @@ KernelTable chosenKernels(const Context& context, const std::string& filter) {
     KernelTable table = allKernels(context);
     try {
         const std::regex pattern(filter);
-        std::erase_if(table, [&](const KernelVariant& variant) { return !std::regex_search(nameOf(variant), pattern); });
+        std::erase_if(table, [&](const KernelVariant& variant) {
+            return !std::regex_search(nameOf(variant), pattern);
+        });
     } catch (const std::regex_error&) { table.clear(); }
-    check(!table.empty(), "--filter is {}, must be a regular expression that matches a kernel's line, such as \"^rasterize .*kMasked=1\"",
+    check(!table.empty(),
+          "--filter is {}, must be a regular expression that matches a kernel's line, such as \"^rasterize "
+          ".*kMasked=1\"",
           filter);
     return table;
 }
@@ -65,7 +71,8 @@ KernelTable chosenKernels(const Context& context, const std::string& filter) {
 void runKernels(const KernelsOptions& options) {
     std::optional<OutputFiles> files;
     if (!options.out.empty()) { files.emplace(options.out); }
-    const Context context({.device = options.device, .device_extensions = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME}});
+    const Context context({.device = options.device,
+                           .device_extensions = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME}});
     const bool has_statistics = context.hasKernelStatistics();
     Json kernels = Json::array();
     // Lives until the next one is made: RADV frees its code memory once no kernel is left in it, and would
@@ -78,7 +85,9 @@ void runKernels(const KernelsOptions& options) {
         for (const auto& [name, value] : variant.constants) { constants[name] = value; }
         const Json statistics = has_statistics ? statisticsOf(context, kernel) : Json::object();
         fmt::print("{}\n", nameOf(variant));
-        for (const auto& [name, value] : statistics.items()) { fmt::print("    {:<40} {}\n", name, value.dump()); }
+        for (const auto& [name, value] : statistics.items()) {
+            fmt::print("    {:<40} {}\n", name, value.dump());
+        }
         std::fflush(stdout);
         kernels.push_back({{"shader", variant.shader}, {"constants", constants}, {"statistics", statistics}});
         last = std::move(kernel);

@@ -34,13 +34,16 @@ bool fitsWhole(const Context& context, ChunkSource& source, const RunOptions& ru
         if (finest == nullptr || leaf.levels.front().level < finest->level) { finest = &leaf.levels.front(); }
     }
     if (finest == nullptr) { return true; }
-    const int sh_degree = std::min(source.open(finest->file).shDegree(), static_cast<int>(run.load.sh_degree.value_or(kMaxShDegree)));
+    const int sh_degree = std::min(source.open(finest->file).shDegree(),
+                                   static_cast<int>(run.load.sh_degree.value_or(kMaxShDegree)));
     const std::uint64_t splats = source.meta().levels.front().splats + source.environmentSplats();
-    return splats <= memoryForScene(context, run.memory_limit_mib) / deviceBytesPerSplat(sh_degree, !run.load.flatten);
+    return splats <=
+           memoryForScene(context, run.memory_limit_mib) / deviceBytesPerSplat(sh_degree, !run.load.flatten);
 }
 
 // The coarsest level that can be loaded and has splats.
-Scene loadCoarsest(const std::string& source, const RunOptions& run, std::size_t levels, LoadNotes& notes, const Progress& progress) {
+Scene loadCoarsest(const std::string& source, const RunOptions& run, std::size_t levels, LoadNotes& notes,
+                   const Progress& progress) {
     LoadOptions load = run.load;
     for (load.lod = static_cast<std::uint32_t>(levels - 1);; --*load.lod) {
         try {
@@ -52,7 +55,8 @@ Scene loadCoarsest(const std::string& source, const RunOptions& run, std::size_t
     }
 }
 
-OpenedScene openMoving(const Context& context, const std::string& source, const RunOptions& run, const Progress& progress) {
+OpenedScene openMoving(const Context& context, const std::string& source, const RunOptions& run,
+                       const Progress& progress) {
     MovingSettings settings;
     settings.rate_hz = run.load.scene_rate_hz;
     settings.blend = run.load.scene_blend;
@@ -65,8 +69,8 @@ OpenedScene openMoving(const Context& context, const std::string& source, const 
     scene.sample = moving->takeFirst();
     scene.sample.name = source;
     scene.notes = moving->notes();
-    scene.notes.lines.push_back(
-        fmt::format("{}: a moving scene of {} frames, {} a second", source, moving->series().size(), run.load.scene_rate_hz));
+    scene.notes.lines.push_back(fmt::format("{}: a moving scene of {} frames, {} a second", source,
+                                            moving->series().size(), run.load.scene_rate_hz));
     scene.live = std::move(moving);
     return scene;
 }
@@ -75,10 +79,11 @@ OpenedScene openMoving(const Context& context, const std::string& source, const 
 
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib) {
     if (memory_limit_mib == 0) { return {options.lod, {}}; }
-    return {options.lod, [limit_bytes = memory_limit_mib << 20, options](std::uint64_t splats, int sh_degree) {
-                const int kept = std::min(sh_degree, static_cast<int>(options.sh_degree.value_or(kMaxShDegree)));
-                return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
-            }};
+    return {
+        options.lod, [limit_bytes = memory_limit_mib << 20, options](std::uint64_t splats, int sh_degree) {
+            const int kept = std::min(sh_degree, static_cast<int>(options.sh_degree.value_or(kMaxShDegree)));
+            return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
+        }};
 }
 
 void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
@@ -87,30 +92,36 @@ void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
     if (options.antialiased) { scene.antialiased = scene.isGaussian3d(); }
 }
 
-Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
-                  const Progress& progress, std::uint64_t builtin_splats) {
+Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib,
+                  LoadNotes& notes, const Progress& progress, std::uint64_t builtin_splats) {
     const WebSettings web{webCacheFolder(), options.cache_limit_mib << 20, {}};
-    Scene scene = loadSceneFromAnywhere(source, builtin_splats, notes, progress, levelChoice(options, memory_limit_mib), web);
+    Scene scene = loadSceneFromAnywhere(source, builtin_splats, notes, progress,
+                                        levelChoice(options, memory_limit_mib), web);
     drawAs(options, scene, notes);
     return scene;
 }
 
-Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes, std::uint64_t memory_limit_mib) {
-    return loadAsAsked(source, options, memory_limit_mib, notes, ProgressLine("loading " + source).progress());
+Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes,
+                       std::uint64_t memory_limit_mib) {
+    return loadAsAsked(source, options, memory_limit_mib, notes,
+                       ProgressLine("loading " + source).progress());
 }
 
 bool mayLive(const std::string& source, const LoadOptions& options) {
-    check(options.splat_budget == 0 || !options.lod, "{}: lod {} asks for one level, splat-budget for all of them: expected one of the two",
-          source, options.lod.value_or(0));
+    check(options.splat_budget == 0 || !options.lod,
+          "{}: lod {} asks for one level, splat-budget for all of them: expected one of the two", source,
+          options.lod.value_or(0));
     if (options.lod) { return false; }
     const bool is_streamed = isStreamedScene(source);
     check(options.splat_budget == 0 || is_streamed,
-          "{}: has no levels of detail, expected a streamed SOG scene (lod-meta.json) for --splat-budget to choose among", source);
+          "{}: has no levels of detail, expected a streamed SOG scene (lod-meta.json) for --splat-budget to "
+          "choose among",
+          source);
     return is_streamed || isMovingScene(source);
 }
 
-std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
-                                    const Progress& progress) {
+std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run,
+                                    StreamFor purpose, const Progress& progress) {
     if (!isStreamedScene(source)) { return openMoving(context, source, run, progress); }
     const LoadOptions& load = run.load;
     const bool whole_if_it_fits = purpose == StreamFor::kPictures && load.splat_budget == 0;
@@ -130,8 +141,11 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     settings.pictures = purpose == StreamFor::kPictures;
     if (settings.pictures) { settings.look_ahead_rad = kPictureLookAhead; }
     // The sample's level is of no interest to the user.
-    std::erase_if(scene.notes.lines, [](const std::string& line) { return line.find(": level of detail ") != std::string::npos; });
-    scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves, at levels chosen by the view", source, chunks->leaves().size()));
+    std::erase_if(scene.notes.lines, [](const std::string& line) {
+        return line.find(": level of detail ") != std::string::npos;
+    });
+    scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves, at levels chosen by the view", source,
+                                            chunks->leaves().size()));
     auto stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);
     scene.stream = stream.get();
     scene.live = std::move(stream);
@@ -143,18 +157,22 @@ void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progres
         stopIfInterrupted();
         if (progress) { progress(share); }
     });
-    for (const std::string& said : scene.takeLines(Waits::kBriefly)) { fmt::print(stderr, "binosplat: {}\n", said); }
+    for (const std::string& said : scene.takeLines(Waits::kBriefly)) {
+        fmt::print(stderr, "binosplat: {}\n", said);
+    }
 }
 
 FrameCounters::Streaming streamingOf(const LiveScene& scene) {
     const StreamCounters counters = scene.counters();
-    return {counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading, counters.scene_frames_late};
+    return {counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading,
+            counters.scene_frames_late};
 }
 
 Scene loadAs(const RunOptions& run, const std::string& source, std::uint64_t builtin_splats) {
     LoadNotes notes;
     ProgressLine line("loading " + source);
-    Scene scene = loadAsAsked(source, run.load, run.memory_limit_mib, notes, isAddress(source) ? line.progress() : nullptr, builtin_splats);
+    Scene scene = loadAsAsked(source, run.load, run.memory_limit_mib, notes,
+                              isAddress(source) ? line.progress() : nullptr, builtin_splats);
     if (!notes.stale.empty()) { fmt::print(stderr, "binosplat: {}\n", notes.stale); }
     return scene;
 }

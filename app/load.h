@@ -24,11 +24,12 @@ void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes);
 
 // SCENE of any command: a file, a folder, a built-in scene (then `builtin_splats` sets the size, 0 for its
 // default), or an address. `memory_limit_mib` limits device memory, 0: no limit.
-Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
-                  const Progress& progress = {}, std::uint64_t builtin_splats = 0);
+Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib,
+                  LoadNotes& notes, const Progress& progress = {}, std::uint64_t builtin_splats = 0);
 
 // With progress on the terminal.
-Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes, std::uint64_t memory_limit_mib = 0);
+Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes,
+                       std::uint64_t memory_limit_mib = 0);
 
 // A scene that is not loaded whole: streamed, or moving.
 struct OpenedScene {
@@ -47,8 +48,8 @@ enum class StreamFor {
 // level.
 bool mayLive(const std::string& source, const LoadOptions& options);
 // Opens such a source; empty if it should be loaded whole after all.
-std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
-                                    const Progress& progress = {});
+std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run,
+                                    StreamFor purpose, const Progress& progress = {});
 // Waits until everything that the eyes and the time need has been loaded. Prints what cannot be loaded.
 void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progress = {});
 // What has been loaded of it, for reports.

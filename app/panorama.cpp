@@ -46,7 +46,8 @@ void add(FrameResult& sum, FrameResult face) {
 
 std::optional<Panorama> askedPanorama(const RenderOptions& options) {
     if (options.projection == Projection::kFlat) { return std::nullopt; }
-    return Panorama{options.projection == Projection::k360 ? 2.0 * std::numbers::pi : std::numbers::pi, *options.run.camera.size_px};
+    return Panorama{options.projection == Projection::k360 ? 2.0 * std::numbers::pi : std::numbers::pi,
+                    *options.run.camera.size_px};
 }
 
 Cameras panoramaCameras(const Cameras& cameras, const Panorama& panorama) {
@@ -57,8 +58,8 @@ Cameras panoramaCameras(const Cameras& cameras, const Panorama& panorama) {
     return made;
 }
 
-EyePictures renderPanorama(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& cameras,
-                           const Panorama& panorama) {
+EyePictures renderPanorama(StereoFrame& frame, LiveScene* live, const FrameSettings& settings,
+                           const Cameras& cameras, const Panorama& panorama) {
     const bool mono = settings.mode == Mode::kMono;
     const std::size_t count = mono ? 1 : 2;
     std::array<std::vector<Eye>, 2> faces;
@@ -75,9 +76,13 @@ EyePictures renderPanorama(StereoFrame& frame, LiveScene* live, const FrameSetti
         std::vector<Eye> eyes{faces[0][face]};
         if (!mono) { eyes.push_back(faces[1][face]); }
         add(made.result, frame.render(eyes, settings));
-        for (std::size_t eye = 0; eye < count; ++eye) { seen[eye].push_back(frame.readPicture(static_cast<int>(eye))); }
+        for (std::size_t eye = 0; eye < count; ++eye) {
+            seen[eye].push_back(frame.readPicture(static_cast<int>(eye)));
+        }
     }
-    for (std::size_t eye = 0; eye < count; ++eye) { made.pictures.push_back(panoramaOf(panorama, seen[eye])); }
+    for (std::size_t eye = 0; eye < count; ++eye) {
+        made.pictures.push_back(panoramaOf(panorama, seen[eye]));
+    }
     return made;
 }
 

@@ -24,7 +24,7 @@ struct EyePictures {
 };
 
 // For the midpoint in Mode::kMono, otherwise for both eyes.
-EyePictures renderPanorama(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& cameras,
-                           const Panorama& panorama);
+EyePictures renderPanorama(StereoFrame& frame, LiveScene* live, const FrameSettings& settings,
+                           const Cameras& cameras, const Panorama& panorama);
 
 }  // namespace binosplat

@@ -30,14 +30,20 @@ template <typename... Handlers>
 Match(Handlers...) -> Match<Handlers...>;  // clang needs it before its 17th version
 
 void run(int argument_count, const char* const* arguments) {
-    std::visit(
-        Match{[](const RenderOptions& options) { runRender(options); }, [](const BenchOptions& options) { runBench(options); },
-              [](const ViewOptions& options) { runView(options); }, [](const InfoOptions& options) { runInfo(options); },
-              [](const SceneOptions& options) { runScene(options); }, [](const ConvertOptions& options) { runConvert(options); },
-              [](const CompareOptions& options) { runCompare(options); }, [](const StabilityOptions& options) { runStability(options); },
-              [](const KernelsOptions& options) { runKernels(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
-        parseOptions(argument_count, arguments));
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
+    std::visit(Match{[](const RenderOptions& options) { runRender(options); },
+                     [](const BenchOptions& options) { runBench(options); },
+                     [](const ViewOptions& options) { runView(options); },
+                     [](const InfoOptions& options) { runInfo(options); },
+                     [](const SceneOptions& options) { runScene(options); },
+                     [](const ConvertOptions& options) { runConvert(options); },
+                     [](const CompareOptions& options) { runCompare(options); },
+                     [](const StabilityOptions& options) { runStability(options); },
+                     [](const KernelsOptions& options) { runKernels(options); },
+                     [](const HelpText& help) { fmt::print("{}", help.text); }},
+               parseOptions(argument_count, arguments));
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        fail("standard output: cannot be written ({})", std::strerror(errno));
+    }
 }
 
 int report(ExitCode code, std::string message) {
@@ -54,8 +60,11 @@ int runProgram(int argument_count, const char* const* arguments) {
     try {
         run(argument_count, arguments);
         return static_cast<int>(ExitCode::kDone);
-    } catch (const Error& error) { return report(error.code(), error.what()); } catch (const std::bad_alloc&) {
-        return report(ExitCode::kBadInput, "memory: not enough for this scene and picture size, must be smaller");
+    } catch (const Error& error) {
+        return report(error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+        return report(ExitCode::kBadInput,
+                      "memory: not enough for this scene and picture size, must be smaller");
     } catch (const vk::SystemError& error) {
         const Error explained = deviceError("Vulkan", error);
         return report(explained.code(), explained.what());

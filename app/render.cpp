@@ -37,7 +37,8 @@ void writeEyes(OutputFiles& files, const NamedPictures& pictures, const std::opt
     }
 }
 
-void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings, PictureLayout layout) {
+void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings,
+                   PictureLayout layout) {
     std::vector<Image> pictures{frame.readPicture(0)};
     if (settings.mode != Mode::kMono) {
         pictures.push_back(frame.readPicture(kRight));
@@ -59,7 +60,8 @@ FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const Fra
 }
 
 // The options, completed with the choices that they left to the file and the memory.
-RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes, const LiveScene* live) {
+RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes,
+                     const LiveScene* live) {
     LoadOptions& load = options.run.load;
     if (live != nullptr) {
         load.sh_degree = static_cast<std::uint32_t>(live->traits().sh_degree);
@@ -69,7 +71,8 @@ RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes&
         load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
         load.antialiased = scene.antialiased;
     }
-    options.run.stereo.order = orderOf(options.run.stereo, scene.by_distance ? Order::kDistance : Order::kDepth);
+    options.run.stereo.order =
+        orderOf(options.run.stereo, scene.by_distance ? Order::kDistance : Order::kDepth);
     return options;
 }
 
@@ -79,18 +82,22 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
     const auto is_blind = [](const PathFrame& frame) { return frame.frame.sees_nothing; };
     const auto first = std::ranges::find_if(report.frames, is_blind);
     if (first == report.frames.end()) { return; }
-    warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene, first - report.frames.begin(),
-                     std::ranges::count_if(report.frames, is_blind), report.frames.size(),
-                     describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near, first->cameras.origin)));
+    warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene,
+                     first - report.frames.begin(), std::ranges::count_if(report.frames, is_blind),
+                     report.frames.size(),
+                     describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near,
+                                     first->cameras.origin)));
 }
 
 // Once its frames are published: a film of all, or a message if a signal has come.
-void finishPath(const RenderOptions& options, const HeadPath& path, std::size_t rendered, OutputFiles& files) {
+void finishPath(const RenderOptions& options, const HeadPath& path, std::size_t rendered,
+                OutputFiles& files) {
     const std::size_t done = path.first + rendered, all = path.times_s.size();
     try {
         stopIfInterrupted();
     } catch (const Interrupted& stop) {
-        throw Interrupted{stop.signal, fmt::format("{} of {} frames are in {}, --resume continues", done, all, options.out.string())};
+        throw Interrupted{stop.signal, fmt::format("{} of {} frames are in {}, --resume continues", done, all,
+                                                   options.out.string())};
     }
     if (!options.video) { return; }
     writeFilm(options.out, path.film_pattern, files.staging() / "video.mp4", path.rate_hz, filmTags(options));
@@ -107,7 +114,8 @@ void runRender(const RenderOptions& options) {
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.run.camera);
     const std::optional<Panorama> panorama = askedPanorama(options);
-    const std::optional<HeadPath> path = options.path.empty() ? std::nullopt : std::optional(readHeadPath(options));
+    const std::optional<HeadPath> path =
+        options.path.empty() ? std::nullopt : std::optional(readHeadPath(options));
 
     LoadNotes notes;
     Scene scene;
@@ -128,7 +136,9 @@ void runRender(const RenderOptions& options) {
     if (!opened) { opened.emplace(contextOptions(options.run)); }
     const Context& context = *opened;
     std::optional<const GpuScene> whole;
-    if (live == nullptr) { whole.emplace(context, scene, ProgressLine("uploading " + options.scene).progress()); }
+    if (live == nullptr) {
+        whole.emplace(context, scene, ProgressLine("uploading " + options.scene).progress());
+    }
     const GpuScene& gpu_scene = whole ? *whole : live->scene();
     const RenderOptions used = asUsed(options, scene, notes, live);
     // For the warning if a camera sees none of them.
@@ -148,8 +158,9 @@ void runRender(const RenderOptions& options) {
     stopIfInterrupted();
     if (path) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
-        const PathReport said{context.deviceName(), used, cameras,
-                              renderPath(frame, live, settings, cameras, stereo.axes, units_per_metre, *path, files)};
+        const PathReport said{
+            context.deviceName(), used, cameras,
+            renderPath(frame, live, settings, cameras, stereo.axes, units_per_metre, *path, files)};
         report(said);
         finishPath(options, *path, said.frames.size(), files);
         warnOfBlindFrames(said, positions);
@@ -162,8 +173,11 @@ void runRender(const RenderOptions& options) {
         if (made.result.sees_nothing) { warn(fmt::format("{}: no splat is seen from there", options.scene)); }
     } else {
         settings.keep_classes = true;
-        const std::span<const Eye> eyes = stereo.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-        if (live != nullptr) { settle(*live, eyes, ProgressLine("loading the visible part of " + live->name()).progress()); }
+        const std::span<const Eye> eyes =
+            stereo.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        if (live != nullptr) {
+            settle(*live, eyes, ProgressLine("loading the visible part of " + live->name()).progress());
+        }
         FrameResult result = renderTimed(frame, eyes, settings);
         if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
         writePictures(files, frame, settings, options.layout);
@@ -171,9 +185,11 @@ void runRender(const RenderOptions& options) {
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
         if (result.sees_nothing) {
-            warn(fmt::format("{}: {}", options.scene,
-                             describeNearest(cameras.middle.world_from_camera, positions, cameras.near, cameras.origin)));
-        } else if (const std::string cut = describeCut(cameras.middle, positions, cameras.near); !cut.empty()) {
+            warn(fmt::format(
+                "{}: {}", options.scene,
+                describeNearest(cameras.middle.world_from_camera, positions, cameras.near, cameras.origin)));
+        } else if (const std::string cut = describeCut(cameras.middle, positions, cameras.near);
+                   !cut.empty()) {
             warn(fmt::format("{}: {}", options.scene, cut));
         }
     }

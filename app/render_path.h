@@ -35,7 +35,8 @@ using NamedPictures = std::vector<std::pair<std::string_view, Image>>;
 NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout);
 // Display-encoded, to `stem` plus the extension. If the format is PNG, a panorama of one eye is tagged for
 // galleries.
-void writeDisplay(const std::filesystem::path& stem, const Image& image, const std::optional<Panorama>& panorama);
+void writeDisplay(const std::filesystem::path& stem, const Image& image,
+                  const std::optional<Panorama>& panorama);
 // A panorama of one eye as JPEG, too, with the tags: many galleries take no other. Nothing in a build that
 // cannot write it.
 void writeForGalleries(const std::filesystem::path& stem, const Image& image, const Panorama& panorama);
@@ -49,7 +50,8 @@ HeadPath readHeadPath(const RenderOptions& options);
 // Each frame waits until everything that it needs of a `live` scene is loaded (null: the scene is whole); a
 // moving scene begins with its first frame. A signal ends it after the last whole frame; before there is one,
 // it throws Interrupted.
-std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& start, Axes kind,
-                                  double units_per_metre, const HeadPath& path, OutputFiles& files);
+std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& settings,
+                                  const Cameras& start, Axes kind, double units_per_metre,
+                                  const HeadPath& path, OutputFiles& files);
 
 }  // namespace binosplat

@@ -37,8 +37,8 @@ void runStability(const StabilityOptions& options) {
     files.publish();
     fmt::print("{}", table);
     const std::vector<std::string> failures = run.failures();
-    check(failures.empty(), "stability: {} of {} cases miss their bounds, the first is: {}", failures.size(), all,
-          failures.empty() ? "" : failures.front());
+    check(failures.empty(), "stability: {} of {} cases miss their bounds, the first is: {}", failures.size(),
+          all, failures.empty() ? "" : failures.front());
 }
 
 }  // namespace binosplat

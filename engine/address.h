@@ -11,7 +11,8 @@ namespace binosplat {
 
 // True for a prefix in small letters; `source` may have it in either case.
 inline bool beginsWith(std::string_view source, std::string_view prefix) {
-    return source.size() >= prefix.size() && std::ranges::equal(source.substr(0, prefix.size()), prefix, [](char a, char b) {
+    return source.size() >= prefix.size() &&
+           std::ranges::equal(source.substr(0, prefix.size()), prefix, [](char a, char b) {
                return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
            });
 }
@@ -20,15 +21,18 @@ inline bool isPlainHttp(std::string_view source) { return beginsWith(source, "ht
 
 // http:// or https:// followed by more, in letters of either case. Whether the rest is an address is known
 // when it is requested.
-inline bool isAddress(std::string_view source) { return isPlainHttp(source) || beginsWith(source, "https://"); }
+inline bool isAddress(std::string_view source) {
+    return isPlainHttp(source) || beginsWith(source, "https://");
+}
 
 // Throws Error for an address that names a user, perhaps with a password; the message leaves both out.
 inline void requireNoUser(std::string_view source) {
     if (!isAddress(source)) { return; }
     const std::size_t host = source.find("//") + 2;
     const std::size_t at = source.substr(0, source.find_first_of("/?#", host)).rfind('@');
-    check(at == std::string_view::npos || at < host, "{}...{}: names a user, expected an address that anybody may read",
-          source.substr(0, host), source.substr(std::min(at, source.size())));
+    check(at == std::string_view::npos || at < host,
+          "{}...{}: names a user, expected an address that anybody may read", source.substr(0, host),
+          source.substr(std::min(at, source.size())));
 }
 
 }  // namespace binosplat

@@ -21,7 +21,8 @@ enum class ExitCode : int {
 // `what()` is one line: file, place, what is wrong, what was expected.
 class Error : public std::runtime_error {
 public:
-    Error(ExitCode code, std::string message) : std::runtime_error(oneLine(std::move(message))), code_(code) {}
+    Error(ExitCode code, std::string message)
+        : std::runtime_error(oneLine(std::move(message))), code_(code) {}
     explicit Error(const std::string& message) : Error(ExitCode::kBadInput, message) {}
     [[nodiscard]] ExitCode code() const { return code_; }
 

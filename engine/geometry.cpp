@@ -8,7 +8,8 @@
 namespace binosplat {
 
 Pose compose(const Pose& a_from_b, const Pose& b_from_c) {
-    return {glm::normalize(a_from_b.orientation * b_from_c.orientation), transform(a_from_b, b_from_c.position)};
+    return {glm::normalize(a_from_b.orientation * b_from_c.orientation),
+            transform(a_from_b, b_from_c.position)};
 }
 
 Pose inverse(const Pose& target_from_source) {
@@ -25,7 +26,8 @@ Pose lookAt(const glm::dvec3& eye, const glm::dvec3& look, const glm::dvec3& up)
     const glm::dvec3 right = glm::cross(forward, up);
     const double sine = glm::length(right) / (glm::length(forward) * glm::length(up));
     check(sine > 1e-9,
-          "camera: --eye, --look and --up must span a view: look may not equal eye, and up may not lie along the line of sight");
+          "camera: --eye, --look and --up must span a view: look may not equal eye, and up may not lie along "
+          "the line of sight");
     const glm::dvec3 down = glm::cross(forward, right);
     const glm::dmat3 world_from_camera(glm::normalize(right), glm::normalize(down), glm::normalize(forward));
     return {glm::normalize(glm::quat_cast(world_from_camera)), eye};
@@ -45,7 +47,8 @@ Intrinsics intrinsicsFromFovX(double fov_x_rad, glm::uvec2 size_px) {
 
 bool isInPicture(const Eye& eye, const glm::dvec3& point_camera) {
     const glm::dvec3& p = point_camera;
-    const double u = eye.intrinsics.fx * p.x / p.z + eye.intrinsics.cx, v = eye.intrinsics.fy * p.y / p.z + eye.intrinsics.cy;
+    const double u = eye.intrinsics.fx * p.x / p.z + eye.intrinsics.cx,
+                 v = eye.intrinsics.fy * p.y / p.z + eye.intrinsics.cy;
     return p.z > 0.0 && u >= 0.0 && v >= 0.0 && u < eye.size_px.x && v < eye.size_px.y;
 }
 
@@ -57,8 +60,10 @@ glm::dvec3 middleOf(std::span<const Eye> eyes) {
 
 std::array<Eye, 2> stereoPair(const Eye& middle, double eye_distance) {
     std::array<Eye, 2> eyes{middle, middle};
-    eyes[kLeft].world_from_camera.position = transform(middle.world_from_camera, {-0.5 * eye_distance, 0.0, 0.0});
-    eyes[kRight].world_from_camera.position = transform(middle.world_from_camera, {0.5 * eye_distance, 0.0, 0.0});
+    eyes[kLeft].world_from_camera.position =
+        transform(middle.world_from_camera, {-0.5 * eye_distance, 0.0, 0.0});
+    eyes[kRight].world_from_camera.position =
+        transform(middle.world_from_camera, {0.5 * eye_distance, 0.0, 0.0});
     return eyes;
 }
 

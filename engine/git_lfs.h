@@ -15,7 +15,8 @@ inline constexpr std::string_view kLfsPointerStart = "version https://git-lfs.gi
 // Throws Error if `start`, the beginning of `file`, is a pointer's.
 inline void requireNoLfsPointer(std::string_view start, const std::string& file) {
     check(!start.starts_with(kLfsPointerStart),
-          "{}: is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)", file);
+          "{}: is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)",
+          file);
 }
 
 }  // namespace binosplat

@@ -27,7 +27,9 @@ inline constexpr std::array<std::string_view, 8> kModeNames{"mono",  "two-pass",
 constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std::size_t>(mode)]; }
 
 // True if the affiliated eye is reprojected from the dominant one.
-constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
+constexpr bool reprojects(Mode mode) {
+    return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted;
+}
 // True if frames are made from previous ones. A frame without a following one is as in kPredicted or, for
 // kAlternate, as in kShared.
 constexpr bool hasHistory(Mode mode) { return mode == Mode::kAlternate || mode == Mode::kTemporal; }

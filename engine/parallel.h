@@ -25,7 +25,9 @@ void forBlocks(std::size_t count, std::size_t block, int threads, const Work& wo
     std::mutex failure_mutex;
     const auto drain = [&] {
         try {
-            for (std::size_t i = next++; i < block_count; i = next++) { work(i * block, std::min(count, (i + 1) * block)); }
+            for (std::size_t i = next++; i < block_count; i = next++) {
+                work(i * block, std::min(count, (i + 1) * block));
+            }
         } catch (...) {
             const std::lock_guard lock(failure_mutex);
             failure = std::current_exception();
@@ -34,7 +36,8 @@ void forBlocks(std::size_t count, std::size_t block, int threads, const Work& wo
     };
     {
         std::vector<std::jthread> helpers;
-        const std::size_t wanted = std::min<std::size_t>(block_count, static_cast<std::size_t>(std::max(threads, 1)));
+        const std::size_t wanted =
+            std::min<std::size_t>(block_count, static_cast<std::size_t>(std::max(threads, 1)));
         for (std::size_t i = 1; i < wanted; ++i) { helpers.emplace_back(drain); }
         drain();
     }
@@ -44,7 +47,8 @@ void forBlocks(std::size_t count, std::size_t block, int threads, const Work& wo
 // Moves `from` to `to` (same size) by ascending bucket(element) in [0, bucket_count), keeping the order
 // within a bucket.
 template <typename T, typename Bucket>
-void sortByBucket(std::span<const T> from, std::span<T> to, std::size_t bucket_count, int threads, const Bucket& bucket) {
+void sortByBucket(std::span<const T> from, std::span<T> to, std::size_t bucket_count, int threads,
+                  const Bucket& bucket) {
     const std::size_t part_count = static_cast<std::size_t>(std::clamp(threads, 1, 16));
     const std::size_t part = std::max<std::size_t>(1, (from.size() + part_count - 1) / part_count);
     std::vector<std::vector<std::size_t>> places(part_count, std::vector<std::size_t>(bucket_count, 0));

@@ -16,9 +16,11 @@ constexpr int kMostNames = 1000;
 
 PartFile::PartFile(const std::string& target) : target_(target) {
     std::error_code unreadable;  // opening says why
-    check(!std::filesystem::is_directory(target, unreadable), "{}: is a directory, expected a file name to write to", target);
+    check(!std::filesystem::is_directory(target, unreadable),
+          "{}: is a directory, expected a file name to write to", target);
     // Renaming over a device would replace it.
-    const bool plain = !std::filesystem::exists(target, unreadable) || std::filesystem::is_regular_file(target, unreadable);
+    const bool plain =
+        !std::filesystem::exists(target, unreadable) || std::filesystem::is_regular_file(target, unreadable);
     check(plain, "{}: is not a regular file, expected a file name to write to", target);
     // Names that are taken, by a link into somebody's files perhaps, are left alone.
     for (int attempt = 0; attempt < kMostNames && file_ == nullptr; ++attempt) {
@@ -36,7 +38,8 @@ PartFile::~PartFile() {
 }
 
 void PartFile::write(const void* data, std::size_t bytes) {
-    check(std::fwrite(data, 1, bytes, file_.get()) == bytes, "{}: writing failed: {}", target_, std::strerror(errno));
+    check(std::fwrite(data, 1, bytes, file_.get()) == bytes, "{}: writing failed: {}", target_,
+          std::strerror(errno));
 }
 
 void PartFile::commit() {

@@ -34,8 +34,11 @@ static fs::path mappedFile() {
     for (std::string line; std::getline(maps, line);) {
         std::uintptr_t begin = 0, end = 0;
         int name_at = 0;
-        const int read = std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR " %*s %*s %*s %*s %n", &begin, &end, &name_at);
-        if (read == 2 && begin <= here && here < end) { return line.substr(static_cast<std::size_t>(name_at)); }
+        const int read =
+            std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR " %*s %*s %*s %*s %n", &begin, &end, &name_at);
+        if (read == 2 && begin <= here && here < end) {
+            return line.substr(static_cast<std::size_t>(name_at));
+        }
     }
     return {};
 }
@@ -43,7 +46,9 @@ static fs::path mappedFile() {
 fs::path programFile() {
     std::error_code not_told;
     // /proc/self/exe names the dynamic loader if the program was started as `ld-linux.so binosplat`.
-    if (fs::path mapped = mappedFile(); mapped.is_absolute() && fs::exists(mapped, not_told)) { return mapped; }
+    if (fs::path mapped = mappedFile(); mapped.is_absolute() && fs::exists(mapped, not_told)) {
+        return mapped;
+    }
     return fs::read_symlink("/proc/self/exe", not_told);
 }
 
@@ -89,13 +94,16 @@ fs::path userPicturesFolder() {
 
 bool isTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 
-std::vector<std::string> programArguments(int count, const char* const* arguments) { return {arguments, arguments + count}; }
+std::vector<std::string> programArguments(int count, const char* const* arguments) {
+    return {arguments, arguments + count};
+}
 
 bool isStartedByClick() { return false; }
 
 void tellUser(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
-const char* const kVulkanHint = "install a Vulkan driver, e.g. mesa-vulkan-drivers, and look at `vulkaninfo --summary`";
+const char* const kVulkanHint =
+    "install a Vulkan driver, e.g. mesa-vulkan-drivers, and look at `vulkaninfo --summary`";
 
 bool runsAsAdministrator() { return ::geteuid() == 0; }
 
@@ -113,9 +121,9 @@ std::vector<fs::path> systemFonts() {
 
 std::vector<fs::path> furtherSystemFonts() {
     std::vector<fs::path> files = systemFonts();
-    for (const char* file :
-         {"opentype/noto/NotoSansCJK-Regular.ttc", "noto-cjk/NotoSansCJK-Regular.ttc", "google-noto-cjk/NotoSansCJK-Regular.ttc",
-          "truetype/wqy/wqy-microhei.ttc", "truetype/droid/DroidSansFallbackFull.ttf"}) {
+    for (const char* file : {"opentype/noto/NotoSansCJK-Regular.ttc", "noto-cjk/NotoSansCJK-Regular.ttc",
+                             "google-noto-cjk/NotoSansCJK-Regular.ttc", "truetype/wqy/wqy-microhei.ttc",
+                             "truetype/droid/DroidSansFallbackFull.ttf"}) {
         files.push_back(fs::path("/usr/share/fonts") / file);
     }
     return files;
@@ -208,7 +216,8 @@ std::optional<fs::space_info> memoryBehind(const fs::path& folder) {
 std::optional<FileStamp> stampOf(std::FILE* file) {
     struct stat status {};
     if (::fstat(::fileno(file), &status) != 0) { return std::nullopt; }
-    return FileStamp{static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+    return FileStamp{static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec,
+                     status.st_mtim.tv_nsec};
 }
 
 std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target) {

@@ -29,16 +29,19 @@ namespace {
 
 std::wstring wide(const std::string& text) {
     const int length = static_cast<int>(text.size());
-    std::wstring result(static_cast<std::size_t>(::MultiByteToWideChar(CP_UTF8, 0, text.data(), length, nullptr, 0)), L'\0');
+    std::wstring result(
+        static_cast<std::size_t>(::MultiByteToWideChar(CP_UTF8, 0, text.data(), length, nullptr, 0)), L'\0');
     ::MultiByteToWideChar(CP_UTF8, 0, text.data(), length, result.data(), static_cast<int>(result.size()));
     return result;
 }
 
 std::string narrow(const std::wstring& text) {
     const int length = static_cast<int>(text.size());
-    std::string result(static_cast<std::size_t>(::WideCharToMultiByte(CP_UTF8, 0, text.data(), length, nullptr, 0, nullptr, nullptr)),
+    std::string result(static_cast<std::size_t>(::WideCharToMultiByte(CP_UTF8, 0, text.data(), length,
+                                                                      nullptr, 0, nullptr, nullptr)),
                        '\0');
-    ::WideCharToMultiByte(CP_UTF8, 0, text.data(), length, result.data(), static_cast<int>(result.size()), nullptr, nullptr);
+    ::WideCharToMultiByte(CP_UTF8, 0, text.data(), length, result.data(), static_cast<int>(result.size()),
+                          nullptr, nullptr);
     return result;
 }
 
@@ -75,7 +78,9 @@ std::string environment(const char* name) {
     return value != nullptr ? narrow(value) : "";
 }
 
-void setEnvironment(const char* name, const std::string& value) { ::_wputenv_s(wide(name).c_str(), wide(value).c_str()); }
+void setEnvironment(const char* name, const std::string& value) {
+    ::_wputenv_s(wide(name).c_str(), wide(value).c_str());
+}
 
 static fs::path userFolder(const char* variable) {
     const fs::path folder = wide(environment(variable));
@@ -88,7 +93,9 @@ std::vector<fs::path> fileSystemRoots() {
     std::vector<fs::path> drives;
     const DWORD there = ::GetLogicalDrives();  // a bit each, from A on
     for (int letter = 0; letter < 26; ++letter) {
-        if ((there >> letter & 1) != 0) { drives.emplace_back(fmt::format("{}:\\", static_cast<char>('A' + letter))); }
+        if ((there >> letter & 1) != 0) {
+            drives.emplace_back(fmt::format("{}:\\", static_cast<char>('A' + letter)));
+        }
     }
     return drives;
 }
@@ -99,7 +106,9 @@ fs::path userConfigFolder() { return userFolder("APPDATA"); }
 
 fs::path userPicturesFolder() {
     std::array<wchar_t, MAX_PATH> folder{};
-    if (::SHGetFolderPathW(nullptr, CSIDL_MYPICTURES, nullptr, SHGFP_TYPE_CURRENT, folder.data()) == S_OK) { return folder.data(); }
+    if (::SHGetFolderPathW(nullptr, CSIDL_MYPICTURES, nullptr, SHGFP_TYPE_CURRENT, folder.data()) == S_OK) {
+        return folder.data();
+    }
     const fs::path home = userHomeFolder();
     return home.empty() ? fs::path() : home / "Pictures";
 }
@@ -124,15 +133,20 @@ std::vector<std::string> programArguments(int count, const char* const* argument
 
 bool isStartedByClick() {
     std::array<DWORD, 2> others{};  // in the console
-    return ::GetConsoleProcessList(others.data(), static_cast<DWORD>(others.size())) == 1 && isTerminal(stderr);
+    return ::GetConsoleProcessList(others.data(), static_cast<DWORD>(others.size())) == 1 &&
+           isTerminal(stderr);
 }
 
 void tellUser(const std::string& line) {
     fmt::print(stderr, "{}\n", line);
-    if (isStartedByClick()) { ::MessageBoxW(nullptr, wide(line).c_str(), L"binosplat", MB_OK | MB_ICONERROR | MB_SETFOREGROUND); }
+    if (isStartedByClick()) {
+        ::MessageBoxW(nullptr, wide(line).c_str(), L"binosplat", MB_OK | MB_ICONERROR | MB_SETFOREGROUND);
+    }
 }
 
-const char* const kVulkanHint = "install the newest driver of the graphics card from its maker (NVIDIA, AMD, Intel): Vulkan comes with it";
+const char* const kVulkanHint =
+    "install the newest driver of the graphics card from its maker (NVIDIA, AMD, Intel): Vulkan comes with "
+    "it";
 
 bool runsAsAdministrator() { return ::IsUserAnAdmin() != 0; }
 
@@ -156,11 +170,13 @@ static std::vector<fs::path> fontFiles(std::initializer_list<const char*> names)
     return files;
 }
 
-std::vector<fs::path> systemFonts() { return fontFiles({"segoeui.ttf", "arial.ttf", "tahoma.ttf", "DejaVuSans.ttf"}); }
+std::vector<fs::path> systemFonts() {
+    return fontFiles({"segoeui.ttf", "arial.ttf", "tahoma.ttf", "DejaVuSans.ttf"});
+}
 
 std::vector<fs::path> furtherSystemFonts() {
-    return fontFiles(
-        {"segoeui.ttf", "seguisym.ttf", "msyh.ttc", "YuGothM.ttc", "meiryo.ttc", "malgun.ttf", "msgothic.ttc", "simsun.ttc", "arial.ttf"});
+    return fontFiles({"segoeui.ttf", "seguisym.ttf", "msyh.ttc", "YuGothM.ttc", "meiryo.ttc", "malgun.ttf",
+                      "msgothic.ttc", "simsun.ttc", "arial.ttf"});
 }
 
 std::uint64_t processId() { return ::GetCurrentProcessId(); }
@@ -168,7 +184,9 @@ std::uint64_t processId() { return ::GetCurrentProcessId(); }
 double threadSeconds() {
     FILETIME created{}, ended{}, kernel{}, user{};
     ::GetThreadTimes(::GetCurrentThread(), &created, &ended, &kernel, &user);
-    const auto steps = [](const FILETIME& time) { return static_cast<double>(time.dwHighDateTime) * 4294967296.0 + time.dwLowDateTime; };
+    const auto steps = [](const FILETIME& time) {
+        return static_cast<double>(time.dwHighDateTime) * 4294967296.0 + time.dwLowDateTime;
+    };
     return 1e-7 * (steps(kernel) + steps(user));
 }
 
@@ -178,16 +196,18 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
     std::wstring line;
     for (const std::string& word : words) { line += (line.empty() ? L"" : L" ") + quoted(wide(word)); }
     SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
-    const HANDLE made = ::CreateFileW(log.c_str(), GENERIC_WRITE, FILE_SHARE_READ, &inherited, CREATE_NEW, FILE_ATTRIBUTE_NORMAL, nullptr);
-    check(made != INVALID_HANDLE_VALUE, "{} cannot be run (error {} of {})", words[0], ::GetLastError(), log.string());
+    const HANDLE made = ::CreateFileW(log.c_str(), GENERIC_WRITE, FILE_SHARE_READ, &inherited, CREATE_NEW,
+                                      FILE_ATTRIBUTE_NORMAL, nullptr);
+    check(made != INVALID_HANDLE_VALUE, "{} cannot be run (error {} of {})", words[0], ::GetLastError(),
+          log.string());
     const Handle output(made);
     STARTUPINFOW start{};
     start.cb = sizeof(start);
     start.dwFlags = STARTF_USESTDHANDLES;
     start.hStdOutput = start.hStdError = output.get();
     PROCESS_INFORMATION process{};
-    const BOOL started =
-        ::CreateProcessW(nullptr, line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW, nullptr, nullptr, &start, &process);
+    const BOOL started = ::CreateProcessW(nullptr, line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW,
+                                          nullptr, nullptr, &start, &process);
     check(started != 0, "{} cannot be run (error {})", words[0], ::GetLastError());
     const Handle running(process.hProcess), thread(process.hThread);
     DWORD code = 1;
@@ -202,7 +222,8 @@ File openRegularFile(const fs::path& path, std::string& reason) {
         return nullptr;
     }
     int descriptor = -1;
-    const errno_t failed = ::_wsopen_s(&descriptor, path.c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD | _S_IWRITE);
+    const errno_t failed = ::_wsopen_s(&descriptor, path.c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT,
+                                       _SH_DENYNO, _S_IREAD | _S_IWRITE);
     if (failed != 0) {
         reason = std::strerror(failed);
         return nullptr;
@@ -217,8 +238,8 @@ File openRegularFile(const fs::path& path, std::string& reason) {
 
 File createFile(const fs::path& path) {
     int descriptor = -1;
-    errno =
-        ::_wsopen_s(&descriptor, path.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD | _S_IWRITE);
+    errno = ::_wsopen_s(&descriptor, path.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+                        _SH_DENYNO, _S_IREAD | _S_IWRITE);
     return descriptor >= 0 ? File(::_fdopen(descriptor, "wb")) : nullptr;
 }
 
@@ -244,14 +265,16 @@ std::optional<FileStamp> stampOf(std::FILE* file) {
         return std::nullopt;
     }
     // In ticks of 100 ns.
-    const auto ticks =
-        static_cast<std::int64_t>(std::uint64_t{status.ftLastWriteTime.dwHighDateTime} << 32 | status.ftLastWriteTime.dwLowDateTime);
-    return FileStamp{std::uint64_t{status.nFileSizeHigh} << 32 | status.nFileSizeLow, ticks / 10'000'000, ticks % 10'000'000 * 100};
+    const auto ticks = static_cast<std::int64_t>(std::uint64_t{status.ftLastWriteTime.dwHighDateTime} << 32 |
+                                                 status.ftLastWriteTime.dwLowDateTime);
+    return FileStamp{std::uint64_t{status.nFileSizeHigh} << 32 | status.nFileSizeLow, ticks / 10'000'000,
+                     ticks % 10'000'000 * 100};
 }
 
 std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target) {
     // A handle of its own: reading at a place moves the handle that it is done with.
-    const HANDLE opened = ::ReOpenFile(handleOf(file), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, 0);
+    const HANDLE opened =
+        ::ReOpenFile(handleOf(file), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, 0);
     if (opened == INVALID_HANDLE_VALUE) {
         errno = EIO;
         return std::nullopt;
@@ -262,7 +285,8 @@ std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::sp
         OVERLAPPED place{};
         place.Offset = static_cast<DWORD>(offset + done);
         place.OffsetHigh = static_cast<DWORD>((offset + done) >> 32);
-        const auto wanted = static_cast<DWORD>(std::min<std::size_t>(target.size() - done, std::size_t{1} << 30));
+        const auto wanted =
+            static_cast<DWORD>(std::min<std::size_t>(target.size() - done, std::size_t{1} << 30));
         DWORD got = 0;
         const BOOL read = ::ReadFile(own.get(), target.data() + done, wanted, &got, &place);
         if (read == 0 && ::GetLastError() != ERROR_HANDLE_EOF) {

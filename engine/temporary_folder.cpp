@@ -43,9 +43,11 @@ void removeFolder(const fs::path& folder) noexcept {
 TemporaryFolder::TemporaryFolder(const std::string& prefix, const char* purpose) {
     std::error_code error;
     const fs::path parent = fs::temp_directory_path(error);
-    check(!error, "the folder for temporary files: {}, must be a folder that can be written", error.message());
+    check(!error, "the folder for temporary files: {}, must be a folder that can be written",
+          error.message());
     path_ = createFolder(parent, prefix);
-    check(!path_.empty(), "{}: no folder can be made there for {}: {}", parent.string(), purpose, std::strerror(errno));
+    check(!path_.empty(), "{}: no folder can be made there for {}: {}", parent.string(), purpose,
+          std::strerror(errno));
 }
 
 TemporaryFolder::~TemporaryFolder() {

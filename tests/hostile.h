@@ -26,8 +26,12 @@ struct Tally {
             const std::string message = error.what();
             const bool one_line = message.find_first_of("\n\r") == std::string::npos;
             const bool enough_memory = message.find("than this machine gives") == std::string::npos;
-            if (message.size() < 8 || !one_line || !enough_memory) { FAIL_CHECK(what << ": the message is '" << message << "'"); }
-        } catch (const std::exception& error) { FAIL_CHECK(what << ": not an Error but '" << error.what() << "'"); }
+            if (message.size() < 8 || !one_line || !enough_memory) {
+                FAIL_CHECK(what << ": the message is '" << message << "'");
+            }
+        } catch (const std::exception& error) {
+            FAIL_CHECK(what << ": not an Error but '" << error.what() << "'");
+        }
     }
 };
 
@@ -94,7 +98,8 @@ inline void spliceBytes(const std::string& good, int count, const Attempt& attem
         const std::size_t at = random() % bytes.size(), length = 1 + random() % 16;
         const auto kind = static_cast<std::size_t>(random() % 12);
         if (kind < kExtremes.size()) {
-            bytes.replace(at, std::min(kExtremes[kind].size(), bytes.size() - at), kExtremes[kind].substr(0, bytes.size() - at));
+            bytes.replace(at, std::min(kExtremes[kind].size(), bytes.size() - at),
+                          kExtremes[kind].substr(0, bytes.size() - at));
         } else if (kind == 10) {
             bytes.erase(at, length);
         } else {
@@ -107,7 +112,8 @@ inline void spliceBytes(const std::string& good, int count, const Attempt& attem
 // Every number in the first `reach` bytes of a text, replaced by each of these.
 inline void replaceNumbers(const std::string& good, std::size_t reach, const Attempt& attempt) {
     std::vector<std::string> absurd = wordsIn(
-        "-1 0 4294967296 9223372036854775807 9223372036854775808 18446744073709551615 -9223372036854775808 nan -inf 1e308 1e999 1e-320 "
+        "-1 0 4294967296 9223372036854775807 9223372036854775808 18446744073709551615 -9223372036854775808 "
+        "nan -inf 1e308 1e999 1e-320 "
         "0x10 \"7\" 99999999999999999999999");
     absurd.emplace_back();
     const auto isNumber = [](char letter) {

@@ -14,7 +14,8 @@ namespace binosplat::test {
 // Set by test programs that contain the program itself (fork_program.cpp): runs it in a fork of this process,
 // which has already loaded and linked the libraries; that is a third of its start-up time. Returns -1 if a
 // fork is not possible, otherwise the status from `waitpid`.
-inline int (*run_in_fork)(const std::string& arguments, const std::string& environment, const std::filesystem::path& folder,
+inline int (*run_in_fork)(const std::string& arguments, const std::string& environment,
+                          const std::filesystem::path& folder,
                           const std::filesystem::path& outputs) = nullptr;
 
 // An empty folder to run in, removed with the test. Standard output and error are kept outside of it. On
@@ -35,7 +36,9 @@ struct Workplace {
     // As in the shell: `arguments` may redirect, and `environment` is NAME=VALUE ... in front of the program.
     [[nodiscard]] Outcome run(const std::string& arguments, const std::string& environment = "") const {
         if (run_in_fork != nullptr) {
-            if (const int status = run_in_fork(arguments, environment, path, base); status != -1) { return outcomeOf(status); }
+            if (const int status = run_in_fork(arguments, environment, path, base); status != -1) {
+                return outcomeOf(status);
+            }
         }
         return runCommand(environment + " '" BINOSPLAT_PROGRAM "' " + arguments);
     }
@@ -49,7 +52,8 @@ struct Workplace {
     }
 
     // A run that must end with this code and one line of error, which contains `part`.
-    void checkRefused(const std::string& arguments, int exit_code, const std::string& part, const std::string& environment = "") const {
+    void checkRefused(const std::string& arguments, int exit_code, const std::string& part,
+                      const std::string& environment = "") const {
         CAPTURE(environment);
         const Outcome outcome = run(arguments, environment);
         INFO(arguments << ": " << outcome.errors);
@@ -62,13 +66,17 @@ struct Workplace {
     // Any shell command.
     [[nodiscard]] Outcome runCommand(const std::string& command) const {
         const std::string out = (base / "output").string(), errors = (base / "errors").string();
-        return outcomeOf(std::system(("cd '" + path.string() + "' && { " + command + "; } >'" + out + "' 2>'" + errors + "'").c_str()));
+        return outcomeOf(std::system(
+            ("cd '" + path.string() + "' && { " + command + "; } >'" + out + "' 2>'" + errors + "'")
+                .c_str()));
     }
 #endif
 
     [[nodiscard]] bool isEmpty() const { return std::filesystem::is_empty(path); }
     [[nodiscard]] bool holds(const std::string& name) const { return std::filesystem::exists(path / name); }
-    void write(const std::string& name, const std::string& text) const { std::ofstream(path / name, std::ios::binary) << text; }
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(path / name, std::ios::binary) << text;
+    }
     [[nodiscard]] std::string bytesOf(const std::string& name) const { return textIn(path / name); }
     // Everything in it, by paths relative to it.
     [[nodiscard]] std::set<std::string> files() const {
@@ -82,10 +90,13 @@ struct Workplace {
 private:
 #ifndef _WIN32
     [[nodiscard]] Outcome outcomeOf(int status) const {
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textIn(base / "output"), textIn(base / "errors")};
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textIn(base / "output"),
+                textIn(base / "errors")};
     }
 #endif
-    static std::filesystem::path makeBase() { return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-"); }
+    static std::filesystem::path makeBase() {
+        return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-");
+    }
 };
 
 // For facts that use one: TEST_CASE_FIXTURE(AtWork, "...").

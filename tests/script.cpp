@@ -18,7 +18,9 @@ std::map<std::string, std::list<Script>>& scripts() {
     return all;
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 // The rest of a line that begins with this word.
 std::optional<std::string> behind(const std::string& text, const std::string& word) {
@@ -103,7 +105,8 @@ private:
         for (std::size_t dollar = 0; (dollar = text.find('$', dollar)) != std::string::npos; ++dollar) {
             const bool in_braces = text.substr(dollar, 2) == "${";
             const std::size_t begin = dollar + 1 + in_braces;
-            const std::size_t end = std::min(text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_", begin), text.size());
+            const std::size_t end =
+                std::min(text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_", begin), text.size());
             const auto name = names_.find(text.substr(begin, end - begin));
             if (name != names_.end()) { text.replace(dollar, end + in_braces - dollar, name->second); }
         }
@@ -120,7 +123,9 @@ private:
     // The lines that continue this one.
     std::string textOf(const std::string& mark) {
         std::string text;
-        for (; at_ < script_.lines.size() && lineAt(at_).starts_with(mark); ++at_) { text += lineAt(at_).substr(mark.size()) + "\n"; }
+        for (; at_ < script_.lines.size() && lineAt(at_).starts_with(mark); ++at_) {
+            text += lineAt(at_).substr(mark.size()) + "\n";
+        }
         return text;
     }
     [[nodiscard]] std::string bytesOf(const std::string& name) const { return textIn(host_.folder / name); }
@@ -180,9 +185,13 @@ private:
         } else if (begins("differ")) {
             CHECK(bytesOf(wordsIn(rest_).at(0)) != bytesOf(wordsIn(rest_).at(1)));
         } else if (begins("absent")) {
-            for (const std::string& word : wordsIn(rest_)) { CHECK_FALSE(std::filesystem::exists(host_.folder / word)); }
+            for (const std::string& word : wordsIn(rest_)) {
+                CHECK_FALSE(std::filesystem::exists(host_.folder / word));
+            }
         } else if (begins("there")) {
-            for (const std::string& word : wordsIn(rest_)) { CHECK(std::filesystem::exists(host_.folder / word)); }
+            for (const std::string& word : wordsIn(rest_)) {
+                CHECK(std::filesystem::exists(host_.folder / word));
+            }
         } else if (begins("json")) {
             checkJson();
         } else {
@@ -193,8 +202,9 @@ private:
     }
 
     [[nodiscard]] Outcome runInShell(const std::string& command) const {
-        const std::string log =
-            (std::filesystem::temp_directory_path() / ("script-" + host_.folder.parent_path().filename().string())).string();
+        const std::string log = (std::filesystem::temp_directory_path() /
+                                 ("script-" + host_.folder.parent_path().filename().string()))
+                                    .string();
         const std::string inner = "cd '" + host_.folder.string() + "' && { " + command + "; }";
         const int status = std::system((inner + " >'" + log + "' 2>'" + log + "-errors'").c_str());
         Outcome outcome{status / 256, textIn(log), textIn(log + "-errors")};
@@ -237,8 +247,9 @@ private:
         collect(json, pointer == "/" ? "" : pointer, found);
         CHECK(found.size() > 0);
         // @POINTER is another value of the same file.
-        const nlohmann::json expected =
-            value.starts_with('@') ? json.at(nlohmann::json::json_pointer(value.substr(1))) : nlohmann::json::parse(value);
+        const nlohmann::json expected = value.starts_with('@')
+                                            ? json.at(nlohmann::json::json_pointer(value.substr(1)))
+                                            : nlohmann::json::parse(value);
         for (const nlohmann::json& one : found) { CHECK_MESSAGE(holds(one, relation, expected), one.dump()); }
     }
 
@@ -256,7 +267,9 @@ private:
 Outcome tried(const std::function<std::string()>& action) {
     try {
         return {0, action(), ""};
-    } catch (const Error& error) { return {static_cast<int>(error.code()), "", std::string(error.what()) + "\n"}; }
+    } catch (const Error& error) {
+        return {static_cast<int>(error.code()), "", std::string(error.what()) + "\n"};
+    }
 }
 
 std::string unescaped(const std::string& text) {
@@ -277,7 +290,8 @@ std::string unescaped(const std::string& text) {
 std::string edited(std::string text, const std::string& edit) {
     const std::size_t arrow = edit.find(" =>");
     REQUIRE(arrow != std::string::npos);
-    const std::string from = unescaped(edit.substr(0, arrow)), to = unescaped(edit.substr(std::min(arrow + 4, edit.size())));
+    const std::string from = unescaped(edit.substr(0, arrow)),
+                      to = unescaped(edit.substr(std::min(arrow + 4, edit.size())));
     const std::size_t at = from.empty() ? text.size() : text.find(from);
     REQUIRE_MESSAGE(at != std::string::npos, from);
     return text.replace(at, from.size(), to);
@@ -293,7 +307,8 @@ int addScript(const char* suite, const std::string& path, void (*run)()) {
         const auto always = behind(text, "case"), at_night = behind(text, "nightly case");
         if (always || at_night) {
             cases.push_back({always ? *always : *at_night, "tests/" + path + "_test.txt", {}});
-            doctest::detail::TestCase test(run, file.c_str(), static_cast<unsigned>(number), doctest::detail::TestSuite() * suite);
+            doctest::detail::TestCase test(run, file.c_str(), static_cast<unsigned>(number),
+                                           doctest::detail::TestSuite() * suite);
             test* cases.back().name.c_str();
             if (at_night) { test* nightly(); }
             doctest::detail::regTest(test);

@@ -13,8 +13,9 @@ inline doctest::test_suite needsSharedData() { return doctest::test_suite("share
 // BINOSPLAT_TEST_DATA if set, otherwise ../shared/data beside the checkout.
 inline std::optional<std::filesystem::path> sharedData() {
     const char* chosen = std::getenv("BINOSPLAT_TEST_DATA");
-    const std::filesystem::path folder =
-        chosen != nullptr ? std::filesystem::path(chosen) : std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "../shared/data";
+    const std::filesystem::path folder = chosen != nullptr
+                                             ? std::filesystem::path(chosen)
+                                             : std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "../shared/data";
     if (!std::filesystem::is_directory(folder)) {
         shared_data_is_missing = true;
         MESSAGE("skipped: no shared test scenes at " << folder.string() << " (set BINOSPLAT_TEST_DATA)");

@@ -46,7 +46,9 @@ template <typename... Values>
 struct StringMaker<std::tuple<Values...>> {
     static String convert(const std::tuple<Values...>& all) {
         String text;
-        std::apply([&](const auto&... value) { ((text += (text.size() == 0 ? "" : ", ") + toString(value)), ...); }, all);
+        std::apply(
+            [&](const auto&... value) { ((text += (text.size() == 0 ? "" : ", ") + toString(value)), ...); },
+            all);
         return text;
     }
 };
@@ -94,9 +96,12 @@ struct Range {
     bool has_ends;
 
     friend bool operator==(double value, const Range& range) {
-        return range.has_ends ? value >= range.low && value <= range.high : value > range.low && value < range.high;
+        return range.has_ends ? value >= range.low && value <= range.high
+                              : value > range.low && value < range.high;
     }
-    friend std::ostream& operator<<(std::ostream& stream, const Range& range) { return stream << range.low << " to " << range.high; }
+    friend std::ostream& operator<<(std::ostream& stream, const Range& range) {
+        return stream << range.low << " to " << range.high;
+    }
 };
 template <typename Low, typename High>
 Range between(Low low, High high) {
@@ -111,7 +116,9 @@ Range within(Low low, High high) {
 // From 0 to 1. The numbers of std::mt19937 are the same everywhere; those of the standard's distributions are
 // not.
 inline double drawUnit(std::mt19937& random) { return static_cast<double>(random() >> 8) / 16777216.0; }
-inline double drawBetween(std::mt19937& random, double low, double high) { return low + (high - low) * drawUnit(random); }
+inline double drawBetween(std::mt19937& random, double low, double high) {
+    return low + (high - low) * drawUnit(random);
+}
 
 // The message of the Error that `action` throws; empty if it throws none.
 inline std::string errorOf(const std::function<void()>& action) {

@@ -10,8 +10,8 @@ namespace {
 
 // Reads an action's state with `get`; `name` is that function's, for messages.
 template <typename State>
-State ask(XrResult(XRAPI_PTR* get)(XrSession, const XrActionStateGetInfo*, State*), const char* name, XrStructureType type,
-          const Session& session, XrAction action, XrPath hand) {
+State ask(XrResult(XRAPI_PTR* get)(XrSession, const XrActionStateGetInfo*, State*), const char* name,
+          XrStructureType type, const Session& session, XrAction action, XrPath hand) {
     auto info = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
     info.action = action;
     info.subactionPath = hand;
@@ -31,7 +31,8 @@ Actions::Actions(const Session& session) : session_(session) {
     set_.reset(made);
 }
 
-XrAction Actions::make(const char* name, const char* description, XrActionType type, std::span<const XrPath> hands) const {
+XrAction Actions::make(const char* name, const char* description, XrActionType type,
+                       std::span<const XrPath> hands) const {
     auto info = structure<XrActionCreateInfo>(XR_TYPE_ACTION_CREATE_INFO);
     std::strcpy(info.actionName, name);
     std::strcpy(info.localizedActionName, description);
@@ -43,9 +44,11 @@ XrAction Actions::make(const char* name, const char* description, XrActionType t
     return action;
 }
 
-XrResult Actions::suggest(const std::string& profile, std::span<const XrActionSuggestedBinding> bindings) const {
+XrResult Actions::suggest(const std::string& profile,
+                          std::span<const XrActionSuggestedBinding> bindings) const {
     const Instance& instance = session_.instance();
-    auto suggestion = structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
+    auto suggestion =
+        structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
     suggestion.interactionProfile = instance.path(fmt::format("/interaction_profiles/{}", profile).c_str());
     suggestion.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
     suggestion.suggestedBindings = bindings.data();
@@ -81,24 +84,30 @@ bool Actions::sync() const {
 }
 
 std::optional<double> Actions::readNumber(XrAction action, XrPath hand) const {
-    const auto state = ask(xrGetActionStateFloat, "xrGetActionStateFloat", XR_TYPE_ACTION_STATE_FLOAT, session_, action, hand);
+    const auto state = ask(xrGetActionStateFloat, "xrGetActionStateFloat", XR_TYPE_ACTION_STATE_FLOAT,
+                           session_, action, hand);
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     return static_cast<double>(state.currentState);
 }
 
 std::optional<bool> Actions::readButton(XrAction action, XrPath hand) const {
-    const auto state = ask(xrGetActionStateBoolean, "xrGetActionStateBoolean", XR_TYPE_ACTION_STATE_BOOLEAN, session_, action, hand);
+    const auto state = ask(xrGetActionStateBoolean, "xrGetActionStateBoolean", XR_TYPE_ACTION_STATE_BOOLEAN,
+                           session_, action, hand);
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     return state.currentState == XR_TRUE;
 }
 
 glm::dvec2 Actions::readStick(XrAction action, XrPath hand) const {
-    const auto state = ask(xrGetActionStateVector2f, "xrGetActionStateVector2f", XR_TYPE_ACTION_STATE_VECTOR2F, session_, action, hand);
-    return state.isActive == XR_TRUE ? glm::dvec2(glm::vec2(state.currentState.x, state.currentState.y)) : glm::dvec2(0.0);
+    const auto state = ask(xrGetActionStateVector2f, "xrGetActionStateVector2f",
+                           XR_TYPE_ACTION_STATE_VECTOR2F, session_, action, hand);
+    return state.isActive == XR_TRUE ? glm::dvec2(glm::vec2(state.currentState.x, state.currentState.y))
+                                     : glm::dvec2(0.0);
 }
 
-std::optional<Pose> Actions::locate(XrAction action, XrPath hand, const OwnedSpace& space, XrSpaceLocationFlags needed) const {
-    const auto state = ask(xrGetActionStatePose, "xrGetActionStatePose", XR_TYPE_ACTION_STATE_POSE, session_, action, hand);
+std::optional<Pose> Actions::locate(XrAction action, XrPath hand, const OwnedSpace& space,
+                                    XrSpaceLocationFlags needed) const {
+    const auto state =
+        ask(xrGetActionStatePose, "xrGetActionStatePose", XR_TYPE_ACTION_STATE_POSE, session_, action, hand);
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     auto location = structure<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
     BINOSPLAT_XR(xrLocateSpace(space.get(), session_.space(), session_.displayTime(), &location));

@@ -45,11 +45,15 @@ inline constexpr const char* kGamepadProfile = "microsoft/xbox_controller";
 inline constexpr std::array<GamepadBinding, 7> kGamepadBindings{{
     {"input/thumbstick_left", "gamepad_walk", "Walk, with a gamepad", kLeft, true},
     {"input/thumbstick_right", "gamepad_turn", "Turn, with a gamepad", kRight, true},
-    {"input/menu/click", "gamepad_menu", "Show or hide the panel, with a gamepad", kRight, false, &Hand::menu},
+    {"input/menu/click", "gamepad_menu", "Show or hide the panel, with a gamepad", kRight, false,
+     &Hand::menu},
     {"input/b/click", "gamepad_b", "Show or hide the panel, with a gamepad's B", kRight, false, &Hand::menu},
-    {"input/a/click", "gamepad_play", "Pause or play, or hold to see the other scene, with a gamepad", kRight, false, &Hand::play},
-    {"input/shoulder_left/click", "gamepad_back", "Previous viewpoint, with a gamepad", kLeft, false, &Hand::stick_presses},
-    {"input/shoulder_right/click", "gamepad_on", "Next viewpoint, with a gamepad", kRight, false, &Hand::stick_presses},
+    {"input/a/click", "gamepad_play", "Pause or play, or hold to see the other scene, with a gamepad", kRight,
+     false, &Hand::play},
+    {"input/shoulder_left/click", "gamepad_back", "Previous viewpoint, with a gamepad", kLeft, false,
+     &Hand::stick_presses},
+    {"input/shoulder_right/click", "gamepad_on", "Next viewpoint, with a gamepad", kRight, false,
+     &Hand::stick_presses},
 }};
 
 }  // namespace binosplat::xr

@@ -21,7 +21,8 @@ std::string nameOf(XrResult result) {
 XrResult checkResult(XrResult result, const char* call) {
     if (XR_SUCCEEDED(result)) { return result; }
     const std::string_view text(call);
-    const std::string message = fmt::format("OpenXR: {} failed: {}", text.substr(0, text.find('(')), nameOf(result));
+    const std::string message =
+        fmt::format("OpenXR: {} failed: {}", text.substr(0, text.find('(')), nameOf(result));
     // The second one means that the headset was unplugged after it was found.
     if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_SYSTEM_INVALID) { throw Lost(message); }
     if (result == XR_ERROR_INSTANCE_LOST) { throw InstanceLost(message); }

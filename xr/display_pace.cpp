@@ -15,7 +15,8 @@ constexpr double kJitter = 0.02;
 // True if `stated` is `display` or a multiple of it.
 bool isMultiple(XrDuration stated, XrDuration display) {
     if (display <= 0) { return false; }
-    const double times = static_cast<double>(stated) / static_cast<double>(display), whole = std::round(times);
+    const double times = static_cast<double>(stated) / static_cast<double>(display),
+                 whole = std::round(times);
     return whole >= 1.0 && std::abs(times - whole) <= kJitter * whole;
 }
 
@@ -26,12 +27,15 @@ void DisplayPace::begin(XrTime display_time, XrDuration stated_period, XrDuratio
     const XrDuration period = is_known ? period_ : told_period > 0 ? told_period : stated_period;
     const bool is_same = period == period_ && period > 0;
     const bool is_alike = std::exchange(says_something_, false) && is_same;
-    const double step = is_alike ? static_cast<double>(display_time - last_display_time_) / static_cast<double>(period) : 1.0;
+    const double step =
+        is_alike ? static_cast<double>(display_time - last_display_time_) / static_cast<double>(period) : 1.0;
     lost_periods_ = step > 0.0 && step <= 1.0 + kMostLostPeriods ? step - 1.0 : 0.0;
     last_display_time_ = display_time;
     period_ = period;
 }
 
-void DisplayPace::end(bool shows, double busy_seconds) { says_something_ = shows && 1e9 * busy_seconds < static_cast<double>(period_); }
+void DisplayPace::end(bool shows, double busy_seconds) {
+    says_something_ = shows && 1e9 * busy_seconds < static_cast<double>(period_);
+}
 
 }  // namespace binosplat::xr

@@ -13,7 +13,8 @@ namespace {
 bool hasStage(const Instance& instance, XrSession session) {
     std::vector<XrReferenceSpaceType> offered;
     instance.troubles().tryFor("the stage's floor", [&] {
-        offered = listAll<XrReferenceSpaceType>([&](auto... step) { BINOSPLAT_XR(xrEnumerateReferenceSpaces(session, step...)); });
+        offered = listAll<XrReferenceSpaceType>(
+            [&](auto... step) { BINOSPLAT_XR(xrEnumerateReferenceSpaces(session, step...)); });
     });
     return std::ranges::find(offered, XR_REFERENCE_SPACE_TYPE_STAGE) != offered.end();
 }

@@ -6,7 +6,8 @@ namespace binosplat::xr {
 Gamepad::Gamepad(const Actions& actions) : actions_(actions) {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         const GamepadBinding& input = kGamepadBindings[i];
-        const XrActionType type = input.is_stick ? XR_ACTION_TYPE_VECTOR2F_INPUT : XR_ACTION_TYPE_BOOLEAN_INPUT;
+        const XrActionType type =
+            input.is_stick ? XR_ACTION_TYPE_VECTOR2F_INPUT : XR_ACTION_TYPE_BOOLEAN_INPUT;
         inputs_[i] = actions.make(input.name, input.description, type);
     }
 }
@@ -14,7 +15,8 @@ Gamepad::Gamepad(const Actions& actions) : actions_(actions) {
 void Gamepad::bind(const Instance& instance) const {
     std::vector<XrActionSuggestedBinding> bindings;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-        bindings.push_back({inputs_[i], instance.path(fmt::format("/user/gamepad/{}", kGamepadBindings[i].path).c_str())});
+        bindings.push_back(
+            {inputs_[i], instance.path(fmt::format("/user/gamepad/{}", kGamepadBindings[i].path).c_str())});
     }
     static_cast<void>(actions_.suggest(kGamepadProfile, bindings));
 }

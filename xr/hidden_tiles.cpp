@@ -73,14 +73,16 @@ std::uint32_t hiddenMarginPx(const Intrinsics& intrinsics) {
     return static_cast<std::uint32_t>(std::ceil(kMarginRadians * std::max(intrinsics.fx, intrinsics.fy)));
 }
 
-std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsics& intrinsics, glm::uvec2 size_px,
-                                          std::uint32_t margin_px) {
+std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsics& intrinsics,
+                                          glm::uvec2 size_px, std::uint32_t margin_px) {
     const std::vector<Triangle> triangles = trianglesOf(mesh, intrinsics);
     const glm::uvec2 tiles = (size_px + gpu::kTileSize - 1u) / gpu::kTileSize;
     std::vector<std::uint8_t> hidden_tiles(std::size_t{tiles.x} * tiles.y, 1);
     // A visible pixel keeps every tile within the margin.
     const auto firstTile = [&](std::uint32_t at) { return (at - std::min(at, margin_px)) / gpu::kTileSize; };
-    const auto endTile = [&](std::uint32_t last, std::uint32_t end) { return std::min((last + margin_px) / gpu::kTileSize + 1, end); };
+    const auto endTile = [&](std::uint32_t last, std::uint32_t end) {
+        return std::min((last + margin_px) / gpu::kTileSize + 1, end);
+    };
     std::vector<Span> hidden;
     for (std::uint32_t y = 0; y < size_px.y; ++y) {
         hidden.clear();
@@ -94,8 +96,10 @@ std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsi
         std::uint32_t from = 0;
         for (const Span& span : hidden) {
             for (std::uint32_t row = firstTile(y); from < span.begin && row < endTile(y, tiles.y); ++row) {
-                const auto columns = hidden_tiles.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * tiles.x);
-                std::fill(columns + firstTile(from), columns + endTile(span.begin - 1, tiles.x), std::uint8_t{0});
+                const auto columns =
+                    hidden_tiles.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * tiles.x);
+                std::fill(columns + firstTile(from), columns + endTile(span.begin - 1, tiles.x),
+                          std::uint8_t{0});
             }
             from = std::max(from, span.end);
         }

@@ -13,11 +13,13 @@ namespace binosplat {
 void copyImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Image to, glm::uvec2 size_px);
 // The same for display-encoded pixels (sRGB), as light. On the way they are in `encoded`, an image of the
 // sRGB format with their bytes.
-void decodeImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Image encoded, vk::Image to, glm::uvec2 size_px);
+void decodeImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Image encoded, vk::Image to,
+                 glm::uvec2 size_px);
 void clearImage(const vk::raii::CommandBuffer& commands, vk::Image image, const glm::vec4& colour);
 // Fills the other `levels` with smaller copies of level 0, each from the one before. All are attachments
 // before and after.
-void makeMips(const vk::raii::CommandBuffer& commands, vk::Image image, glm::uvec2 size_px, std::uint32_t levels);
+void makeMips(const vk::raii::CommandBuffer& commands, vk::Image image, glm::uvec2 size_px,
+              std::uint32_t levels);
 // True if the device can do that with images of this format.
 bool canMakeMips(const Context& context, vk::Format format);
 

@@ -22,11 +22,13 @@ Input::Input(const Session& session)
       trigger_(actions_.make("trigger", "Click", XR_ACTION_TYPE_FLOAT_INPUT, hands_)),
       squeeze_(actions_.make("squeeze", "Grab", XR_ACTION_TYPE_FLOAT_INPUT, hands_)),
       stick_(actions_.make("stick", "Move and turn", XR_ACTION_TYPE_VECTOR2F_INPUT, hands_)),
-      stick_click_(actions_.make("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
-      stick_press_(actions_.make("viewpoint", "Next viewpoint, previous on the left", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
+      stick_click_(
+          actions_.make("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
+      stick_press_(actions_.make("viewpoint", "Next viewpoint, previous on the left",
+                                 XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       menu_(actions_.make("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
-      play_(actions_.make("play", "Pause or play; while two scenes are compared, hold to see the other", XR_ACTION_TYPE_BOOLEAN_INPUT,
-                          hands_)),
+      play_(actions_.make("play", "Pause or play; while two scenes are compared, hold to see the other",
+                          XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       haptic_(actions_.make("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT, hands_)),
       gamepad_(actions_),
       gaze_(session, actions_) {
@@ -49,7 +51,10 @@ void Input::suggestBindings() const {
         std::vector<XrActionSuggestedBinding> bindings;
         for (std::size_t h = 0; h < 2; ++h) {
             const auto bind = [&](XrAction action, const char* where) {
-                if (where != nullptr) { bindings.push_back({action, instance.path(fmt::format("{}/{}", kHandPaths[h], where).c_str())}); }
+                if (where != nullptr) {
+                    bindings.push_back(
+                        {action, instance.path(fmt::format("{}/{}", kHandPaths[h], where).c_str())});
+                }
             };
             bind(aim_, "input/aim/pose");
             bind(grip_, "input/grip/pose");
@@ -64,9 +69,13 @@ void Input::suggestBindings() const {
         }
         // A runtime need not know every controller.
         const XrResult result = actions_.suggest(profile.path, bindings);
-        if (XR_FAILED(result)) { rejected += fmt::format("{}{} ({})", rejected.empty() ? "" : ", ", profile.path, nameOf(result)); }
+        if (XR_FAILED(result)) {
+            rejected += fmt::format("{}{} ({})", rejected.empty() ? "" : ", ", profile.path, nameOf(result));
+        }
     }
-    if (!rejected.empty()) { instance.troubles().add("controllers that the OpenXR runtime rejects: " + rejected); }
+    if (!rejected.empty()) {
+        instance.troubles().add("controllers that the OpenXR runtime rejects: " + rejected);
+    }
 }
 
 std::array<Hand, 2> Input::read() {
@@ -96,7 +105,9 @@ void Input::readHand(std::size_t h, Hand& hand) {
     hand.clicks = clicks_[h].update(actions_.readNumber(trigger_, path));
     hand.grabs = grabs_[h].update(actions_.readNumber(squeeze_, path));
     // A pad that is touched but not pressed is at rest.
-    if (actions_.readButton(stick_click_, path).value_or(true)) { hand.stick = actions_.readStick(stick_, path); }
+    if (actions_.readButton(stick_click_, path).value_or(true)) {
+        hand.stick = actions_.readStick(stick_, path);
+    }
     const auto isHeld = [&](XrAction button, Hold& hold) {
         const std::optional<bool> pressed = actions_.readButton(button, path);
         return hold.update(pressed ? std::optional(*pressed ? 1.0 : 0.0) : std::nullopt);
@@ -133,7 +144,8 @@ void Input::pulse(int hand) {
     vibration.frequency = XR_FREQUENCY_UNSPECIFIED;
     vibration.amplitude = kPulseStrength;
     pulses_ = session_.instance().troubles().tryFor("pulses", [&] {
-        BINOSPLAT_XR(xrApplyHapticFeedback(session_.handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)));
+        BINOSPLAT_XR(xrApplyHapticFeedback(session_.handle(), &info,
+                                           reinterpret_cast<const XrHapticBaseHeader*>(&vibration)));
     });
 }
 

@@ -28,7 +28,9 @@ namespace {
 std::vector<XrExtensionProperties> listExtensions() {
     std::uint32_t count = 0;
     XrResult result = xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr);
-    if (XR_FAILED(result)) { refuse(fmt::format("no OpenXR runtime found: looked for {}", whereRuntimeIs()), result); }
+    if (XR_FAILED(result)) {
+        refuse(fmt::format("no OpenXR runtime found: looked for {}", whereRuntimeIs()), result);
+    }
     std::vector<XrExtensionProperties> extensions(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 0});
     result = BINOSPLAT_XR(xrEnumerateInstanceExtensionProperties(nullptr, count, &count, extensions.data()));
     extensions.resize(count);
@@ -37,8 +39,9 @@ std::vector<XrExtensionProperties> listExtensions() {
 
 // Used if the runtime has them.
 std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
-    std::vector<const char*> wanted{kLocalFloorExtension, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
-                                    kUserPresenceExtension, XR_FB_PASSTHROUGH_EXTENSION_NAME};
+    std::vector<const char*> wanted{kLocalFloorExtension, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME,
+                                    XR_EXT_HAND_TRACKING_EXTENSION_NAME, kUserPresenceExtension,
+                                    XR_FB_PASSTHROUGH_EXTENSION_NAME};
     if (options.depth) { wanted.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (options.eye_tracking) { wanted.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
@@ -74,11 +77,15 @@ Instance::Instance(const InstanceOptions& options) {
 void Instance::create(const InstanceOptions& options) {
     const std::vector<XrExtensionProperties> available = listExtensions();
     const auto enable = [&](const char* name) {
-        const auto isIt = [&](const XrExtensionProperties& extension) { return std::strcmp(extension.extensionName, name) == 0; };
+        const auto isIt = [&](const XrExtensionProperties& extension) {
+            return std::strcmp(extension.extensionName, name) == 0;
+        };
         if (std::ranges::any_of(available, isIt)) { extensions_.insert(name); }
     };
     enable(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME);
-    if (extensions_.empty()) { refuse("the OpenXR runtime lacks XR_KHR_vulkan_enable2", XR_ERROR_EXTENSION_NOT_PRESENT); }
+    if (extensions_.empty()) {
+        refuse("the OpenXR runtime lacks XR_KHR_vulkan_enable2", XR_ERROR_EXTENSION_NOT_PRESENT);
+    }
     std::ranges::for_each(wantedExtensions(options), enable);
     std::vector<const char*> names;
     for (const std::string& name : extensions_) { names.push_back(name.c_str()); }
@@ -92,7 +99,9 @@ void Instance::create(const InstanceOptions& options) {
     info.enabledExtensionNames = names.data();
     XrInstance made = XR_NULL_HANDLE;
     const XrResult result = xrCreateInstance(&info, &made);
-    if (XR_FAILED(result)) { refuse(fmt::format("the OpenXR runtime does not start: looked for {}", whereRuntimeIs()), result); }
+    if (XR_FAILED(result)) {
+        refuse(fmt::format("the OpenXR runtime does not start: looked for {}", whereRuntimeIs()), result);
+    }
     instance_.reset(made);
 }
 
@@ -105,7 +114,9 @@ void Instance::findSystem(const InstanceOptions& options) {
         options.wait_for_headset(runtime_name_);
         result = getSystem(handle(), system_);
     }
-    if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime_name_), result); }
+    if (XR_FAILED(result)) {
+        refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime_name_), result);
+    }
 }
 
 bool Instance::findHeadset(const Context& context) {
@@ -149,23 +160,30 @@ void Instance::readViews() {
     // unplugged
     if (result == XR_ERROR_SYSTEM_INVALID) { checkResult(result, "xrEnumerateViewConfigurationViews"); }
     if (XR_FAILED(result)) { refuse(fmt::format("{} does not show two eyes", description_), result); }
-    std::vector<XrViewConfigurationView> views(count, {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
+    std::vector<XrViewConfigurationView> views(count,
+                                               {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
     BINOSPLAT_XR(xrEnumerateViewConfigurationViews(handle(), system_, kStereo, count, &count, views.data()));
     recommended_size_px_ = glm::uvec2(0);
     max_size_px_ = glm::uvec2(UINT32_MAX);
     for (const XrViewConfigurationView& view : views) {
-        recommended_size_px_ = glm::max(recommended_size_px_, glm::uvec2(view.recommendedImageRectWidth, view.recommendedImageRectHeight));
+        recommended_size_px_ = glm::max(recommended_size_px_, glm::uvec2(view.recommendedImageRectWidth,
+                                                                         view.recommendedImageRectHeight));
         max_size_px_ = glm::min(max_size_px_, glm::uvec2(view.maxImageRectWidth, view.maxImageRectHeight));
     }
 }
 
 void Instance::readBlendModes() {
-    const auto modes = listAll<XrEnvironmentBlendMode>(
-        [&](auto... step) { BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(handle(), system_, kStereo, step...)); });
-    const auto has = [&](XrEnvironmentBlendMode mode) { return std::ranges::find(modes, mode) != modes.end(); };
-    blend_mode_ = has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) || modes.empty() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
+    const auto modes = listAll<XrEnvironmentBlendMode>([&](auto... step) {
+        BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(handle(), system_, kStereo, step...));
+    });
+    const auto has = [&](XrEnvironmentBlendMode mode) {
+        return std::ranges::find(modes, mode) != modes.end();
+    };
+    blend_mode_ = has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) || modes.empty() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE
+                                                                         : modes.front();
     see_through_.reset();
-    for (const XrEnvironmentBlendMode mode : {XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}) {
+    for (const XrEnvironmentBlendMode mode :
+         {XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}) {
         if (has(mode)) { see_through_ = mode; }
     }
 }

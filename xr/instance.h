@@ -52,7 +52,9 @@ public:
     [[nodiscard]] const std::string& description() const { return description_; }
     // True if it is enabled: the runtime has it, and it was wanted.
     [[nodiscard]] bool hasExtension(std::string_view name) const { return extensions_.contains(name); }
-    [[nodiscard]] bool takesDepth() const { return hasExtension(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
+    [[nodiscard]] bool takesDepth() const {
+        return hasExtension(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
+    }
     // The extension is enabled, and this headset finds hands.
     [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
     // The extension is enabled, and this headset tracks the gaze.
@@ -72,7 +74,9 @@ public:
     [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value() || passes_through_; }
     // The room is shown by a layer: the extension is enabled, this headset has cameras, and its pictures do
     // not cover the room by their alpha.
-    [[nodiscard]] bool hasPassthrough() const { return passes_through_ && see_through_ != XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND; }
+    [[nodiscard]] bool hasPassthrough() const {
+        return passes_through_ && see_through_ != XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
+    }
 
     [[nodiscard]] XrPath path(const char* text) const;
     // Fills an extension's XrSystem...Properties, whose type is set, for the current headset.

@@ -9,12 +9,14 @@ namespace binosplat::xr {
 void Layers::addViews(std::span<const LayerEye> views, bool see_through) {
     for (std::size_t v = 0; v < views.size(); ++v) {
         const LayerEye& eye = views[v];
-        views_[v] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eye.view.pose, eye.view.fov, eye.colour->subImage(eye.part_px)};
+        views_[v] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eye.view.pose, eye.view.fov,
+                     eye.colour->subImage(eye.part_px)};
         if (eye.depth == nullptr) { continue; }
         depths_[v] = depthInfo(eye.depth->subImage(eye.part_px), eye.near_m);
         views_[v].next = &depths_[v];
     }
-    const XrCompositionLayerFlags flags = see_through ? XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT : 0;
+    const XrCompositionLayerFlags flags =
+        see_through ? XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT : 0;
     const auto count = static_cast<std::uint32_t>(views.size());
     scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, flags, session_.space(), count, views_.data()};
     if (const auto* const room = see_through ? session_.roomLayer() : nullptr) { list_.push_back(room); }
@@ -32,7 +34,8 @@ void Layers::addQuad(const LayerQuad& quad) {
 
 void Layers::hang(const LayerQuad& quad) {
     XrSwapchainSubImage part = quad.swapchain->subImage(quad.size_px);
-    part.imageRect.offset = {static_cast<std::int32_t>(quad.from_px.x), static_cast<std::int32_t>(quad.from_px.y)};
+    part.imageRect.offset = {static_cast<std::int32_t>(quad.from_px.x),
+                             static_cast<std::int32_t>(quad.from_px.y)};
     XrCompositionLayerQuad& panel = panels_.emplace_back();
     panel = {XR_TYPE_COMPOSITION_LAYER_QUAD,
              nullptr,

@@ -35,7 +35,8 @@ struct LayerQuad {
 class Layers {
 public:
     // Only the first `most_quads` of the quads are shown: a frame can do without the rest.
-    explicit Layers(const Session& session, std::size_t most_quads = SIZE_MAX) : session_(session), most_quads_(most_quads) {}
+    explicit Layers(const Session& session, std::size_t most_quads = SIZE_MAX)
+        : session_(session), most_quads_(most_quads) {}
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
@@ -43,7 +44,9 @@ public:
     // by alpha.
     void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) { addViews(eyes, see_through); }
     // The same in a session with insets, which come after the eyes.
-    void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) { addViews(eyes_and_insets, see_through); }
+    void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) {
+        addViews(eyes_and_insets, see_through);
+    }
     // A panel centred at `room_from_panel`, facing along its -z, size_m wide and high. Its picture is blended
     // over what lies behind; its colours are premultiplied by alpha.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);

@@ -5,7 +5,9 @@
 
 namespace binosplat::xr {
 
-std::string runtimeHint() { return "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`"; }
+std::string runtimeHint() {
+    return "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`";
+}
 
 std::string whereRuntimeIs() {
     const std::string chosen = environment("XR_RUNTIME_JSON");

@@ -11,18 +11,24 @@ static bool isChoiceIgnored() { return !environment("XR_RUNTIME_JSON").empty() &
 
 std::string runtimeHint() {
     if (isChoiceIgnored()) {
-        return "start the program without administrator rights, or set that value to " + environment("XR_RUNTIME_JSON");
+        return "start the program without administrator rights, or set that value to " +
+               environment("XR_RUNTIME_JSON");
     }
     // Windows Mixed Reality's own runtime has no Vulkan.
-    return "choose one: SteamVR, Settings > OpenXR > Set SteamVR as OpenXR runtime (also for Windows Mixed Reality, whose own has no "
-           "Vulkan); Meta Quest Link, Settings > General > OpenXR Runtime; or try `binosplat view SCENE --simulate`";
+    return "choose one: SteamVR, Settings > OpenXR > Set SteamVR as OpenXR runtime (also for Windows Mixed "
+           "Reality, whose own has no "
+           "Vulkan); Meta Quest Link, Settings > General > OpenXR Runtime; or try `binosplat view SCENE "
+           "--simulate`";
 }
 
 std::string whereRuntimeIs() {
     const std::string chosen = environment("XR_RUNTIME_JSON"),
-                      registered = "ActiveRuntime in HKEY_LOCAL_MACHINE\\SOFTWARE\\Khronos\\OpenXR\\1 of the registry";
+                      registered =
+                          "ActiveRuntime in HKEY_LOCAL_MACHINE\\SOFTWARE\\Khronos\\OpenXR\\1 of the registry";
     if (chosen.empty()) { return registered; }
-    return isChoiceIgnored() ? registered + " (the loader leaves XR_RUNTIME_JSON out of account in a program that runs as administrator)"
+    return isChoiceIgnored() ? registered +
+                                   " (the loader leaves XR_RUNTIME_JSON out of account in a program that "
+                                   "runs as administrator)"
                              : "XR_RUNTIME_JSON=" + chosen;
 }
 

@@ -69,7 +69,8 @@ FrameOutcome Session::beginFrame() {
         const std::lock_guard lock(context_.queueMutex());
         BINOSPLAT_XR(xrBeginFrame(handle(), &begin_info));
     }
-    const double since_last = static_cast<double>(frame_state_.predictedDisplayTime - last_display_time_) * 1e-9;
+    const double since_last =
+        static_cast<double>(frame_state_.predictedDisplayTime - last_display_time_) * 1e-9;
     const bool known = last_display_time_ != 0 && since_last > 0.0;
     step_seconds_ = std::min(known ? since_last : kUsualPeriodSeconds, kLongestStepSeconds);
     last_display_time_ = frame_state_.predictedDisplayTime;
@@ -97,12 +98,14 @@ bool Session::settle(bool demanded) {
     }
     if (wearing_.hasBegun()) { return false; }
     const std::optional<Pose> head = spaces_.locateHead(displayTime());
-    return head && wearing_.begins(is_focused_, *head, stepSeconds()) && Wearing::isElsewhere(*head) && spaces_.settle(displayTime(), true);
+    return head && wearing_.begins(is_focused_, *head, stepSeconds()) && Wearing::isElsewhere(*head) &&
+           spaces_.settle(displayTime(), true);
 }
 
 double Session::periodMs() const {
     const double period_ms = static_cast<double>(pace_.period()) * 1e-6;
-    return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
+    return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms
+                                                                           : 1e3 * kUsualPeriodSeconds;
 }
 
 void Session::requestExit() {
@@ -129,13 +132,15 @@ void Session::pollEvents() {
                 throw InstanceLost(kGoingAway);
             case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING: {
                 const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
-                if (change.session == handle() && change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL) {
+                if (change.session == handle() &&
+                    change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL) {
                     spaces_.recentreFrom(change.changeTime);
                 }
                 break;
             }
             case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
-                hidden_meshes_.read(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex);
+                hidden_meshes_.read(
+                    reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex);
                 break;
             case XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB:
                 told_for_ = 0;
@@ -144,8 +149,10 @@ void Session::pollEvents() {
                 // Asks again for everything that lost events may have reported and that can be asked for.
                 for (const std::uint32_t eye : {0u, 1u}) { hidden_meshes_.read(eye); }
                 told_for_ = 0;
-                const std::uint32_t count = reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount;
-                instance_.troubles().add(fmt::format("the OpenXR runtime lost {} event{}", count, count == 1 ? "" : "s"));
+                const std::uint32_t count =
+                    reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount;
+                instance_.troubles().add(
+                    fmt::format("the OpenXR runtime lost {} event{}", count, count == 1 ? "" : "s"));
                 break;
             }
             default:  // a changed controller shows in its actions

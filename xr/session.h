@@ -74,9 +74,13 @@ public:
     // The room is also settled once somebody begins to wear the headset, unless the head still is where the
     // room begins.
     bool settle(bool demanded);
-    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() { return spaces_.locateEyes(displayTime()); }
+    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() {
+        return spaces_.locateEyes(displayTime());
+    }
     [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return spaces_.insets(); }
-    [[nodiscard]] std::optional<double> floorBelowMetres() { return floor_.belowMetres(space(), displayTime()); }
+    [[nodiscard]] std::optional<double> floorBelowMetres() {
+        return floor_.belowMetres(space(), displayTime());
+    }
     [[nodiscard]] XrSpace space() const { return spaces_.room(); }
     [[nodiscard]] XrSpace headSpace() const { return spaces_.head(); }
 

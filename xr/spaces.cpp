@@ -14,7 +14,8 @@ constexpr float kHalfIpdMetres = 0.0315f;  // until the headset says where its e
 // The head without its tilt, in our axes; one that looks straight up or down keeps the heading of its
 // right-hand side.
 Pose upright(const Pose& head) {
-    const glm::dvec3 forward = head.orientation * glm::dvec3(0.0, 0.0, 1.0), right = head.orientation * glm::dvec3(1.0, 0.0, 0.0);
+    const glm::dvec3 forward = head.orientation * glm::dvec3(0.0, 0.0, 1.0),
+                     right = head.orientation * glm::dvec3(1.0, 0.0, 0.0);
     const bool is_level = std::hypot(forward.x, forward.z) > 0.1;
     const double heading = is_level ? std::atan2(forward.x, forward.z) : std::atan2(-right.z, right.x);
     return {glm::angleAxis(heading, glm::dvec3(0.0, 1.0, 0.0)), head.position};
@@ -65,7 +66,8 @@ Spaces::Located Spaces::locate(XrSpace space, XrTime time) const {
         located.insets[e] = views[e + 2].fov;
     }
     located.turn_known = count == wanted && (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) != 0;
-    located.place_known = located.turn_known && (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0;
+    located.place_known =
+        located.turn_known && (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0;
     return located;
 }
 

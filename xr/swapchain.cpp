@@ -20,7 +20,8 @@ XrSwapchainUsageFlags flagsOf(ImageUse use) {
         case ImageUse::kDraw:
             return XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
         case ImageUse::kFar:
-            return flagsOf(ImageUse::kDraw) | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
+            return flagsOf(ImageUse::kDraw) | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT |
+                   XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
         case ImageUse::kDepth:
             break;
     }
@@ -30,14 +31,16 @@ XrSwapchainUsageFlags flagsOf(ImageUse use) {
 }  // namespace
 
 vk::Format chooseFormat(const Session& session, std::span<const vk::Format> wanted) {
-    const auto formats = listAll<std::int64_t>([&](auto... step) { BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), step...)); });
+    const auto formats = listAll<std::int64_t>(
+        [&](auto... step) { BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), step...)); });
     for (const vk::Format format : wanted) {
         if (std::ranges::find(formats, static_cast<std::int64_t>(format)) != formats.end()) { return format; }
     }
     return vk::Format::eUndefined;
 }
 
-Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format, ImageUse use)
+Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format,
+                     ImageUse use)
     : session_(&session), size_px_(size_px), format_(format) {
     const std::lock_guard lock(session.context().queueMutex());
     auto info = structure<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
@@ -56,8 +59,10 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
     swapchain_ = {made, {&session.context()}};
     std::uint32_t count = 0;
     BINOSPLAT_XR(xrEnumerateSwapchainImages(handle(), 0, &count, nullptr));
-    std::vector<XrSwapchainImageVulkan2KHR> images(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR, nullptr, VK_NULL_HANDLE});
-    BINOSPLAT_XR(xrEnumerateSwapchainImages(handle(), count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
+    std::vector<XrSwapchainImageVulkan2KHR> images(
+        count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR, nullptr, VK_NULL_HANDLE});
+    BINOSPLAT_XR(xrEnumerateSwapchainImages(handle(), count, &count,
+                                            reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
     for (const XrSwapchainImageVulkan2KHR& image : images) { images_.emplace_back(image.image); }
     check(!images_.empty(), "OpenXR: the swapchain of {} has no images", name);
 }
@@ -80,7 +85,9 @@ vk::Image Swapchain::acquire() {
     info.timeout = kWaitNs;
     int waits = 0;
     while (BINOSPLAT_XR(xrWaitSwapchainImage(handle(), &info)) == XR_TIMEOUT_EXPIRED) {
-        if (++waits == kMostWaits) { throw Error(ExitCode::kNoDevice, "OpenXR: no swapchain image became free for ten seconds"); }
+        if (++waits == kMostWaits) {
+            throw Error(ExitCode::kNoDevice, "OpenXR: no swapchain image became free for ten seconds");
+        }
     }
     return images_.at(index);
 }
@@ -91,7 +98,8 @@ void Swapchain::release() {
 }
 
 XrSwapchainSubImage Swapchain::subImage(glm::uvec2 part_px) const {
-    return {handle(), {{0, 0}, {static_cast<std::int32_t>(part_px.x), static_cast<std::int32_t>(part_px.y)}}, 0};
+    return {
+        handle(), {{0, 0}, {static_cast<std::int32_t>(part_px.x), static_cast<std::int32_t>(part_px.y)}}, 0};
 }
 
 }  // namespace binosplat::xr

@@ -24,7 +24,8 @@ vk::Format chooseFormat(const Session& session, std::span<const vk::Format> want
 class Swapchain {
 public:
     Swapchain() = default;
-    Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format, ImageUse use);
+    Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format,
+              ImageUse use);
 
     // Lends an image and waits until it is free; to be released before the frame ends. Throws Lost, or Error
     // if it is not free within ten seconds.

@@ -14,7 +14,9 @@ constexpr double kMovedMetres = 0.02, kMovedRadians = 0.05;
 // A headset that has been still for this long is not yet worn when it moves, but this much later.
 constexpr double kDeskSeconds = 3.0, kLiftSeconds = 2.0;
 
-double angleBetween(const glm::dquat& a, const glm::dquat& b) { return 2.0 * std::acos(std::min(std::abs(glm::dot(a, b)), 1.0)); }
+double angleBetween(const glm::dquat& a, const glm::dquat& b) {
+    return 2.0 * std::acos(std::min(std::abs(glm::dot(a, b)), 1.0));
+}
 
 }  // namespace
 

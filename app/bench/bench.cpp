@@ -30,7 +30,8 @@ std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
     for (const std::string& source : plan.scenes) {
         for (const BenchSeries& series : plan.series) {
             for (const DrawnViews& drawn : viewsOf(plan, source, run)) {
-                points += countsOf(source, series).size() * series.sizes_px.size() * drawn.views.size() * plan.headsets.size();
+                points += countsOf(source, series).size() * series.sizes_px.size() * drawn.views.size() *
+                          plan.headsets.size();
             }
         }
     }
@@ -38,8 +39,9 @@ std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
 }
 
 // One scene with one splat count, drawn in one way: every size, headset and view.
-void benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series, const std::vector<BenchView>& views,
-                const BenchScene& loaded, std::vector<BenchResult>& results, const std::function<void()>& next) {
+void benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series,
+                const std::vector<BenchView>& views, const BenchScene& loaded,
+                std::vector<BenchResult>& results, const std::function<void()>& next) {
     const Scene& scene = loaded.scene();
     for (const glm::uvec2 size_px : series.sizes_px) {
         for (const std::string& headset : plan.headsets) {
@@ -48,7 +50,8 @@ void benchScene(const Context& context, const BenchPlan& plan, const BenchSeries
                 if (size_px.x > 0) { run.camera.size_px = size_px; }
                 if (!headset.empty()) { run.camera.headset = headset; }
                 const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
-                const BenchPoint point{loaded.gpuScene(), scene, run, cameras, series.name, view.name, run.camera.headset, loaded.live()};
+                const BenchPoint point{loaded.gpuScene(),  scene,        run, cameras, series.name, view.name,
+                                       run.camera.headset, loaded.live()};
                 std::ranges::move(benchPoint(context, point, plan), std::back_inserter(results));
                 next();
             }
@@ -81,7 +84,8 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
                 for (const std::uint64_t splats : countsOf(source, series)) {
                     for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
                         const BenchScene scene(context, drawn.run, source, splats);
-                        benchScene(context, plan, series, drawn.views, scene, run.results, [&] { progress.show(++done / points); });
+                        benchScene(context, plan, series, drawn.views, scene, run.results,
+                                   [&] { progress.show(++done / points); });
                     }
                 }
             }
@@ -103,7 +107,8 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
 void requireScenes(const BenchPlan& plan) {
     for (const std::string& source : plan.scenes) {
         requireNoUser(source);
-        const bool there = isAddress(source) || (isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source));
+        const bool there = isAddress(source) || (isBuiltin(source) ? builtinView(source).has_value()
+                                                                   : std::filesystem::exists(source));
         check(there, "{}: no such scene", source);
     }
 }
@@ -113,7 +118,8 @@ void runBench(const BenchOptions& options) {
     if (!options.motion_file.empty()) { return benchMotion(options, plan); }
     if (!options.photos_folder.empty() || options.orders) {
         check(options.run.load.splat_budget == 0,
-              "splat-budget is {}, expected none with --photos and --orders, which compare whole scenes", options.run.load.splat_budget);
+              "splat-budget is {}, expected none with --photos and --orders, which compare whole scenes",
+              options.run.load.splat_budget);
     }
     if (!options.photos_folder.empty()) { return benchPhotos(options, plan); }
     if (options.orders) { return benchOrders(options, plan); }

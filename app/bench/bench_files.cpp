@@ -17,17 +17,23 @@ using Json = nlohmann::ordered_json;
 
 Json timesJson(const NamedTimes& times) {
     Json json = Json::object();
-    for (const auto& [name, ms] : times) { json[name] = json.contains(name) ? json[name].get<double>() + ms : ms; }
+    for (const auto& [name, ms] : times) {
+        json[name] = json.contains(name) ? json[name].get<double>() + ms : ms;
+    }
     return json;
 }
 
 // PSNR is null if the pictures are equal: JSON has no infinity.
-Json numberOrNull(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
+Json numberOrNull(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? Json(*value) : Json();
+}
 
 Json qualityJson(const std::vector<OriginScores>& quality) {
     Json json = Json::object();
     for (const OriginScores& scores : quality) {
-        Json one{{"pixels", scores.pixels}, {"mean_square", scores.mean_square}, {"psnr_db", numberOrNull(scores.psnrDb())}};
+        Json one{{"pixels", scores.pixels},
+                 {"mean_square", scores.mean_square},
+                 {"psnr_db", numberOrNull(scores.psnrDb())}};
         if (scores.ssim) { one["ssim"] = *scores.ssim; }
         if (scores.flip) { one["flip"] = *scores.flip; }
         if (scores.lpips) { one["lpips"] = *scores.lpips; }
@@ -85,7 +91,9 @@ struct Column {
     std::function<std::string(const BenchResult&)> cell;
 };
 
-std::string number(const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : std::string(); }
+std::string number(const std::optional<double>& value) {
+    return value ? fmt::format("{:.6g}", *value) : std::string();
+}
 
 std::string cellOf(const Json& value) {
     if (value.is_null()) { return {}; }
@@ -107,10 +115,13 @@ std::vector<std::string> namesIn(const BenchRun& run, Entries&& entries) {
 }
 
 std::vector<Column> allColumns(const BenchRun& run) {
-    std::vector<Column> columns{{"device", [device = run.device](const BenchResult&) { return csvCell(device); }}};
+    std::vector<Column> columns{
+        {"device", [device = run.device](const BenchResult&) { return csvCell(device); }}};
     const Json fields = fieldsOf({});
     for (const auto& field : fields.items()) {
-        columns.push_back({field.key(), [name = field.key()](const BenchResult& r) { return cellOf(fieldsOf(r).at(name)); }});
+        columns.push_back({field.key(), [name = field.key()](const BenchResult& r) {
+                               return cellOf(fieldsOf(r).at(name));
+                           }});
     }
     for (const std::string origin : kOrigins) {
         const auto add = [&](const char* what, auto&& of) {
@@ -128,15 +139,19 @@ std::vector<Column> allColumns(const BenchRun& run) {
         }
     }
     for (const std::string stage : kStages) {
-        columns.push_back({stage + " ms", [stage](const BenchResult& r) { return number(sumOf(stagesOf(r.mode, r.pass_ms), stage)); }});
+        columns.push_back({stage + " ms", [stage](const BenchResult& r) {
+                               return number(sumOf(stagesOf(r.mode, r.pass_ms), stage));
+                           }});
     }
     for (const std::string& pass : namesIn(run, [](const BenchResult& r) { return byLabel(r.pass_ms); })) {
-        columns.push_back({pass + " ms", [pass](const BenchResult& r) { return number(sumOf(byLabel(r.pass_ms), pass)); }});
+        columns.push_back(
+            {pass + " ms", [pass](const BenchResult& r) { return number(sumOf(byLabel(r.pass_ms), pass)); }});
     }
     for (const std::string& counter : namesIn(
              run, [](const BenchResult& r) -> const auto& { return r.counters; })) {
         columns.push_back({counter, [counter](const BenchResult& r) {
-                               return r.counters.contains(counter) ? fmt::format("{}", r.counters.at(counter)) : std::string();
+                               return r.counters.contains(counter) ? fmt::format("{}", r.counters.at(counter))
+                                                                   : std::string();
                            }});
     }
     return columns;
@@ -154,10 +169,14 @@ std::string benchJson(const BenchRun& run) {
 std::string benchCsv(const BenchRun& run) {
     const std::vector<Column> columns = allColumns(run);
     std::string csv;
-    for (const Column& column : columns) { csv += fmt::format("{}{}", csv.empty() ? "" : ",", csvCell(column.head)); }
+    for (const Column& column : columns) {
+        csv += fmt::format("{}{}", csv.empty() ? "" : ",", csvCell(column.head));
+    }
     csv += "\n";
     for (const BenchResult& result : run.results) {
-        for (std::size_t i = 0; i < columns.size(); ++i) { csv += fmt::format("{}{}", i == 0 ? "" : ",", columns[i].cell(result)); }
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            csv += fmt::format("{}{}", i == 0 ? "" : ",", columns[i].cell(result));
+        }
         csv += "\n";
     }
     return csv;

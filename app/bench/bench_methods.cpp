@@ -21,13 +21,16 @@ struct Combination {
 };
 
 // Every combination so far with every entry of one more key.
-std::vector<Combination> extend(const std::vector<Combination>& combinations, const std::string& key, const Setting& setting) {
+std::vector<Combination> extend(const std::vector<Combination>& combinations, const std::string& key,
+                                const Setting& setting) {
     std::vector<Combination> extended;
     for (const Combination& combination : combinations) {
         for (const std::string& item : setting.items) {
             Combination& one = extended.emplace_back(combination);
             one.settings[key] = Setting{setting.origin, {item}};
-            if (setting.items.size() > 1) { one.name += key == "resolution" ? "@" + item : fmt::format(" {}={}", key, item); }
+            if (setting.items.size() > 1) {
+                one.name += key == "resolution" ? "@" + item : fmt::format(" {}={}", key, item);
+            }
         }
     }
     return extended;
@@ -36,7 +39,9 @@ std::vector<Combination> extend(const std::vector<Combination>& combinations, co
 }  // namespace
 
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base) {
-    for (const char* key : {"name", "mode"}) { check(table.settings.contains(key), "{}: {} is missing, must be given", table.origin, key); }
+    for (const char* key : {"name", "mode"}) {
+        check(table.settings.contains(key), "{}: {} is missing, must be given", table.origin, key);
+    }
     std::vector<Combination> combinations{{readText(table.settings.at("name")), {}}};
     for (const auto& [key, setting] : table.settings) {
         check(isMethodKey(key), "{} is not a known key of [methods]", setting.origin);
@@ -46,7 +51,8 @@ std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOption
     std::vector<BenchMethod> methods;
     for (Combination& one : combinations) {
         const auto resolution = one.settings.extract("resolution");
-        methods.push_back({one.name, runOptions(one.settings, base).stereo, resolution ? readNumber(resolution.mapped(), 0.1, 1.0) : 1.0});
+        methods.push_back({one.name, runOptions(one.settings, base).stereo,
+                           resolution ? readNumber(resolution.mapped(), 0.1, 1.0) : 1.0});
     }
     return methods;
 }

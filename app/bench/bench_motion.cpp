@@ -18,8 +18,9 @@ namespace binosplat {
 namespace {
 
 // One view of a scene at every pose.
-void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion,
-              const std::string& source, const BenchScene& loaded, const BenchView& view, MotionRun& run) {
+void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan,
+              const HeadMotion& motion, const std::string& source, const BenchScene& loaded,
+              const BenchView& view, MotionRun& run) {
     const GpuScene& gpu_scene = loaded.gpuScene();
     LiveScene* const live = loaded.live();
     RunOptions view_run = view.run;
@@ -29,7 +30,8 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     std::string name = nameIn(plan, source) + (view.name.empty() ? "" : ", " + view.name);
     const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
     const auto poseAt = [&](double time_s) {
-        return moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
+        return moveCameras(
+            start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
     };
     const auto camerasAt = [&](double time_s) {
         const Cameras cameras = poseAt(time_s);
@@ -65,7 +67,9 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
             run.frames[f].streaming = streamingOf(*live);
             run.frames[f].splats_read = live->counters().splats_read;
         }
-        for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) { setTimes(run.frames[first + m], timed[i][m]); }
+        for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) {
+            setTimes(run.frames[first + m], timed[i][m]);
+        }
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
 }
@@ -78,11 +82,16 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     if (!motion.note().empty()) { fmt::print(stderr, "binosplat: {}\n", motion.note()); }
     OutputFiles files(options.out);
     const Context context(contextOptions(options.run));
-    MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
+    MotionRun run{context.deviceName(),
+                  options.run.config,
+                  std::filesystem::path(options.motion_file).filename().string(),
+                  {}};
     for (const std::string& source : plan.scenes) {
         for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
             const BenchScene scene(context, drawn.run, source);
-            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, source, scene, view, run); }
+            for (const BenchView& view : drawn.views) {
+                playView(context, options, plan, motion, source, scene, view, run);
+            }
         }
     }
     writeText(files.staging() / "motion.csv", motionCsv(run));

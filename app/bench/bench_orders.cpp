@@ -52,7 +52,8 @@ HeadEye turnHead(const Cameras& cameras, Side side, double angle_rad, double beh
     const glm::dquat turn = glm::angleAxis(angle_rad, glm::dvec3(0.0, 1.0, 0.0));
     const Pose world_from_turned = compose(world_from_middle, {turn, neck - turn * neck});
     HeadEye head{cameras.eyes[static_cast<std::size_t>(side)], world_from_turned.position};
-    head.eye.world_from_camera = compose(world_from_turned, compose(inverse(world_from_middle), head.eye.world_from_camera));
+    head.eye.world_from_camera =
+        compose(world_from_turned, compose(inverse(world_from_middle), head.eye.world_from_camera));
     return head;
 }
 
@@ -61,7 +62,8 @@ OrderChange changeBetween(const reference::Picture& a, const reference::Picture&
     for (std::size_t i = 0; i < a.rgba.size(); ++i) {
         const glm::dvec3 difference = glm::abs(glm::dvec3(a.rgba[i]) - glm::dvec3(b.rgba[i]));
         change.mean_square += glm::dot(difference, difference) / 3.0;
-        change.share_off += std::max({difference.x, difference.y, difference.z}) > kTwoDisplaySteps ? 1.0 : 0.0;
+        change.share_off +=
+            std::max({difference.x, difference.y, difference.z}) > kTwoDisplaySteps ? 1.0 : 0.0;
     }
     const auto pixels = static_cast<double>(std::max<std::size_t>(a.rgba.size(), 1));
     return {change.mean_square / pixels, change.share_off / pixels};
@@ -70,7 +72,8 @@ OrderChange changeBetween(const reference::Picture& a, const reference::Picture&
 // One scene and view.
 class OrderPoint {
 public:
-    OrderPoint(const Scene& scene, const RunOptions& run, const Cameras& cameras) : scene_(scene), run_(run), cameras_(cameras) {
+    OrderPoint(const Scene& scene, const RunOptions& run, const Cameras& cameras)
+        : scene_(scene), run_(run), cameras_(cameras) {
         settings_.near = cameras.near;
         settings_.background = run.camera.background;
         settings_.is_light = scene_.is_linear;
@@ -84,15 +87,18 @@ public:
         reference::Picture by_depth;
         for (std::size_t i = 0; i < kOrderMethods.size(); ++i) {
             const OrderMethod& method = kOrderMethods[i];
-            OrderResult& result = results.emplace_back(OrderResult{name, method.name, start.eye.size_px, {}, {}});
+            OrderResult& result =
+                results.emplace_back(OrderResult{name, method.name, start.eye.size_px, {}, {}});
             const reference::Picture picture = render(method, start.eye, orderOf(method, start.eye, start));
             if (i == 0) { by_depth = picture; }
             result.from_own = changeBetween(picture, own);
             result.from_depth = changeBetween(picture, by_depth);
             for (int k = 1; k <= kTurns; ++k) {
                 countPopped(method, k, 0.0, result.popped_eyes, result.most_eyes);
-                countPopped(method, k, kNeckMetres / run_.metres_per_unit, result.popped_neck, result.most_neck);
-                progress.show((static_cast<double>(i) + static_cast<double>(k) / kTurns) / static_cast<double>(kOrderMethods.size()));
+                countPopped(method, k, kNeckMetres / run_.metres_per_unit, result.popped_neck,
+                            result.most_neck);
+                progress.show((static_cast<double>(i) + static_cast<double>(k) / kTurns) /
+                              static_cast<double>(kOrderMethods.size()));
             }
         }
         return results;
@@ -104,7 +110,8 @@ private:
     }
 
     // The splats that `eye` sees, ordered as for `head`.
-    [[nodiscard]] std::vector<std::uint32_t> orderOf(const OrderMethod& method, const Eye& eye, const HeadEye& head) const {
+    [[nodiscard]] std::vector<std::uint32_t> orderOf(const OrderMethod& method, const Eye& eye,
+                                                     const HeadEye& head) const {
         stopIfInterrupted();
         reference::Settings settings = settings_;
         if (method.by_distance) { settings.order_from = head.middle; }
@@ -112,21 +119,24 @@ private:
         return reference::sortDepth(reference::compact(scene_, visible, head.eye, settings), settings);
     }
 
-    [[nodiscard]] reference::Picture render(const OrderMethod& method, const Eye& eye, std::span<const std::uint32_t> order) const {
+    [[nodiscard]] reference::Picture render(const OrderMethod& method, const Eye& eye,
+                                            std::span<const std::uint32_t> order) const {
         stopIfInterrupted();
         const auto splats = reference::project(scene_, order, eye, settings_);
         auto pairs = reference::bin(splats, eye.size_px, settings_);
         reference::sortTiles(pairs, settings_);
         const auto ranges = reference::tileRanges(pairs, eye.size_px);
         return method.window == 1 ? reference::rasterize(splats, pairs, ranges, eye, settings_)
-                                  : reference::rasterizeByPixel(scene_, order, splats, pairs, ranges, eye, settings_, method.window);
+                                  : reference::rasterizeByPixel(scene_, order, splats, pairs, ranges, eye,
+                                                                settings_, method.window);
     }
 
     void countPopped(const OrderMethod& method, int k, double behind, double& mean, double& most) const {
         const HeadEye before = turned(k - 1, behind), now = turned(k, behind);
         const auto order = orderOf(method, now.eye, now), old_order = orderOf(method, now.eye, before);
         if (order == old_order) { return; }
-        const double share = changeBetween(render(method, now.eye, order), render(method, now.eye, old_order)).share_off;
+        const double share =
+            changeBetween(render(method, now.eye, order), render(method, now.eye, old_order)).share_off;
         mean += share / kTurns;
         most = std::max(most, share);
     }

@@ -43,7 +43,8 @@ fs::path findPhoto(const fs::path& folder, const std::string& name) {
     for (const char* extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG", ".ppm", ".exr", ".pfm"}) {
         if (const fs::path path = folder / (name + extension); fs::is_regular_file(path)) { return path; }
     }
-    fail("{}: not found, must be the photograph of a camera (with .png, .jpg, .ppm, .exr or .pfm)", (folder / name).string());
+    fail("{}: not found, must be the photograph of a camera (with .png, .jpg, .ppm, .exr or .pfm)",
+         (folder / name).string());
 }
 
 // Both eyes with the affiliated one at the photograph's camera.
@@ -69,9 +70,11 @@ struct Means {
 std::vector<Means> meansOf(const std::vector<PhotoRow>& rows) {
     std::vector<Means> means;
     for (const PhotoRow& row : rows) {
-        const auto found =
-            std::ranges::find_if(means, [&](const Means& one) { return one.scene == row.scene && one.method == row.method; });
-        Means& one = found != means.end() ? *found : means.emplace_back(Means{row.scene, row.method, row.mode, 0, 0.0, 0.0, {}, {}});
+        const auto found = std::ranges::find_if(
+            means, [&](const Means& one) { return one.scene == row.scene && one.method == row.method; });
+        Means& one = found != means.end()
+                         ? *found
+                         : means.emplace_back(Means{row.scene, row.method, row.mode, 0, 0.0, 0.0, {}, {}});
         ++one.cameras;
         one.psnr_db += row.psnr_db;
         one.ssim += row.ssim;
@@ -88,20 +91,25 @@ std::vector<Means> meansOf(const std::vector<PhotoRow>& rows) {
 // Empty if LPIPS was not measured.
 std::optional<double> meanLpips(const Means& means) {
     if (means.lpips.empty()) { return std::nullopt; }
-    return std::accumulate(means.lpips.begin(), means.lpips.end(), 0.0) / static_cast<double>(means.lpips.size());
+    return std::accumulate(means.lpips.begin(), means.lpips.end(), 0.0) /
+           static_cast<double>(means.lpips.size());
 }
 
 const Means& fullOf(const std::vector<Means>& means, const Means& like) {
-    return *std::ranges::find_if(means, [&](const Means& one) { return one.scene == like.scene && one.mode == Mode::kShared; });
+    return *std::ranges::find_if(
+        means, [&](const Means& one) { return one.scene == like.scene && one.mode == Mode::kShared; });
 }
 
 std::string photosCsv(const std::string& device, const std::vector<PhotoRow>& rows) {
-    std::string csv = "device,scene,camera,method,mode,gpu_total_ms,psnr_db_to_photo,ssim_to_photo,psnr_db_to_full";
-    const bool with_lpips = std::ranges::any_of(rows, [](const PhotoRow& row) { return row.lpips.has_value(); });
+    std::string csv =
+        "device,scene,camera,method,mode,gpu_total_ms,psnr_db_to_photo,ssim_to_photo,psnr_db_to_full";
+    const bool with_lpips =
+        std::ranges::any_of(rows, [](const PhotoRow& row) { return row.lpips.has_value(); });
     csv += with_lpips ? ",lpips_to_photo\n" : "\n";
     for (const PhotoRow& row : rows) {
-        csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}", csvCell(device), csvCell(row.scene), csvCell(row.camera),
-                           csvCell(row.method), nameOf(row.mode), row.total_ms, row.psnr_db, row.ssim, psnrOf(row.mean_square_to_full));
+        csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}", csvCell(device), csvCell(row.scene),
+                           csvCell(row.camera), csvCell(row.method), nameOf(row.mode), row.total_ms,
+                           row.psnr_db, row.ssim, psnrOf(row.mean_square_to_full));
         if (with_lpips) { csv += row.lpips ? fmt::format(",{:.6g}", *row.lpips) : ","; }
         csv += "\n";
     }
@@ -126,16 +134,20 @@ std::string photosJson(const std::string& device, const std::vector<Means>& mean
             results.back()["lpips_lost"] = *ours - *theirs;
         }
     }
-    return Json{{"device", device}, {"results", results}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return Json{{"device", device}, {"results", results}}.dump(2, ' ', false,
+                                                               Json::error_handler_t::replace) +
+           "\n";
 }
 
 std::string photosTable(const std::string& device, const std::vector<Means>& means) {
-    std::string table = fmt::format("device: {}; against photographs, means over cameras; lost: worse than the full render\n", device);
+    std::string table = fmt::format(
+        "device: {}; against photographs, means over cameras; lost: worse than the full render\n", device);
     for (const Means& one : means) {
         const Means& full = fullOf(means, one);
-        table += fmt::format("  {:<24} {:<28} {:>4} cameras  {:>10.3f} ms  {:>6.2f} dB  SSIM {:.4f}  lost {:>6.2f} dB, {:.4f}", one.scene,
-                             one.method, one.cameras, median(one.total_ms), one.psnr_db, one.ssim, full.psnr_db - one.psnr_db,
-                             full.ssim - one.ssim);
+        table += fmt::format(
+            "  {:<24} {:<28} {:>4} cameras  {:>10.3f} ms  {:>6.2f} dB  SSIM {:.4f}  lost {:>6.2f} dB, {:.4f}",
+            one.scene, one.method, one.cameras, median(one.total_ms), one.psnr_db, one.ssim,
+            full.psnr_db - one.psnr_db, full.ssim - one.ssim);
         if (const std::optional<double> ours = meanLpips(one), theirs = meanLpips(full); ours && theirs) {
             table += fmt::format("  LPIPS {:.4f}  lost {:.4f}", *ours, *ours - *theirs);
         }
@@ -150,10 +162,13 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
     requireScenes(plan);
     const std::vector<FileCamera> cameras = readCameraFile(options.run.camera.cameras_file, glm::dvec3(0.0));
     std::vector<fs::path> photos;
-    for (std::size_t i = 0; i < cameras.size(); i += options.every) { photos.push_back(findPhoto(options.photos_folder, cameras[i].name)); }
+    for (std::size_t i = 0; i < cameras.size(); i += options.every) {
+        photos.push_back(findPhoto(options.photos_folder, cameras[i].name));
+    }
     OutputFiles files(options.out);
     const Context context(contextOptions(options.run));
-    const double eye_distance = options.run.stereo.ipd_m.value_or(kDefaultIpdMetres) / options.run.metres_per_unit;
+    const double eye_distance =
+        options.run.stereo.ipd_m.value_or(kDefaultIpdMetres) / options.run.metres_per_unit;
     const int affiliated = 1 - options.run.stereo.dominant;
     const BenchMethod shared = plainMethod(Mode::kShared, options.run);
 
@@ -179,9 +194,11 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
                 }
                 const MethodFrames::Rendered rendered = frames.render(eyes, options.run.camera, method);
                 const Image picture = rendered.readPicture(affiliated);
-                const PhotoScores scores = compareWithPhoto(picture, photo, plan.lpips ? &*plan.lpips : nullptr);
-                rows.push_back({nameIn(plan, source), camera.name, method.name, method.stereo.mode, rendered.result.gpu_total_ms,
-                                scores.psnr_db, scores.ssim, compare(picture, full).mean_square, scores.lpips});
+                const PhotoScores scores =
+                    compareWithPhoto(picture, photo, plan.lpips ? &*plan.lpips : nullptr);
+                rows.push_back({nameIn(plan, source), camera.name, method.name, method.stereo.mode,
+                                rendered.result.gpu_total_ms, scores.psnr_db, scores.ssim,
+                                compare(picture, full).mean_square, scores.lpips});
             }
             progress.show(static_cast<double>(i + 1) / static_cast<double>(photos.size()));
         }

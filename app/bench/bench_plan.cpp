@@ -54,7 +54,8 @@ std::string lpipsWeights(const SettingsTable& bench, const BenchOptions& options
     const bool chosen = scores != bench.settings.end();
     const bool asked = chosen && std::ranges::count(scores->second.items, "lpips") > 0;
     if (weights == bench.settings.end()) {
-        check(!asked, "{} lists lpips; name its weights with --lpips FILE or `lpips` in [bench]", asked ? scores->second.origin : "");
+        check(!asked, "{} lists lpips; name its weights with --lpips FILE or `lpips` in [bench]",
+              asked ? scores->second.origin : "");
         return "";
     }
     const std::string file = readText(weights->second);
@@ -84,7 +85,8 @@ BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
         if (key == "name") { series.name = readText(setting); }
         if (key == "sizes") { series.sizes_px = readEach(setting, readSize); }
         if (key == "splats") {
-            series.splats = readEach(setting, [](const Setting& one) { return readCount(one, 1, std::uint64_t{1} << 31); });
+            series.splats = readEach(
+                setting, [](const Setting& one) { return readCount(one, 1, std::uint64_t{1} << 31); });
         }
     }
     check(!series.name.empty(), "{}: name is missing, must be given", table.origin);
@@ -92,8 +94,8 @@ BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
 }
 
 BenchView readView(const SettingsTable& table, const RunOptions& base) {
-    refuseUnknown(table,
-                  {"name", "scene", "size", "eye", "look", "up", "fov-x", "near", "ipd", "metres-per-unit", "flatten", "antialiased"});
+    refuseUnknown(table, {"name", "scene", "size", "eye", "look", "up", "fov-x", "near", "ipd",
+                          "metres-per-unit", "flatten", "antialiased"});
     Settings settings = table.settings;
     BenchView view;
     if (const auto name = settings.extract("name")) { view.name = readText(name.mapped()); }
@@ -107,12 +109,14 @@ BenchView readView(const SettingsTable& table, const RunOptions& base) {
 void addReferences(BenchPlan& plan, const RunOptions& run) {
     std::vector<BenchMethod> methods;
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
-        const auto there = std::ranges::find_if(
-            plan.methods, [&](const BenchMethod& method) { return method.stereo.mode == mode && method.resolution == 1.0; });
+        const auto there = std::ranges::find_if(plan.methods, [&](const BenchMethod& method) {
+            return method.stereo.mode == mode && method.resolution == 1.0;
+        });
         if (there == plan.methods.end()) { methods.push_back(plainMethod(mode, run)); }
     }
     plan.methods.insert(plan.methods.begin(), methods.begin(), methods.end());
-    const bool mono = std::ranges::any_of(plan.methods, [](const BenchMethod& method) { return method.stereo.mode == Mode::kMono; });
+    const bool mono = std::ranges::any_of(
+        plan.methods, [](const BenchMethod& method) { return method.stereo.mode == Mode::kMono; });
     if (plan.twin && !mono) { plan.methods.push_back(plainMethod(Mode::kMono, run)); }
 }
 
@@ -125,14 +129,16 @@ void refuseTwins(const BenchPlan& plan) {
     const auto refuse = [](const char* what, auto&& all, auto&& nameOf) {
         std::set<std::string> names;
         for (const auto& one : all) {
-            check(names.insert(nameOf(one)).second, "{} {} is named twice, names must differ", what, nameOf(one));
+            check(names.insert(nameOf(one)).second, "{} {} is named twice, names must differ", what,
+                  nameOf(one));
         }
     };
     refuse("scene", plan.scenes, [](const std::string& scene) { return scene; });
     refuse("headset", plan.headsets, [](const std::string& headset) { return headset; });
     refuse("series", plan.series, [](const BenchSeries& series) { return series.name; });
     for (const std::string& scene : plan.scenes) {
-        refuse("view", plan.views | std::views::filter([&](const BenchView& view) { return belongsTo(view, scene); }),
+        refuse("view",
+               plan.views | std::views::filter([&](const BenchView& view) { return belongsTo(view, scene); }),
                [](const BenchView& view) { return view.name; });
     }
     refuse("method", plan.methods, [](const BenchMethod& method) { return method.name; });
@@ -152,7 +158,9 @@ BenchPlan planBench(const BenchOptions& options) {
         }
         if (table.name == "series") { plan.series.push_back(readSeries(table, default_size_px)); }
         if (table.name == "views") { plan.views.push_back(readView(table, options.run)); }
-        if (table.name == "methods") { std::ranges::move(readMethods(table, options.run), std::back_inserter(plan.methods)); }
+        if (table.name == "methods") {
+            std::ranges::move(readMethods(table, options.run), std::back_inserter(plan.methods));
+        }
     }
     if (modes.empty() && plan.methods.empty()) {
         modes = {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted};
@@ -165,7 +173,8 @@ BenchPlan planBench(const BenchOptions& options) {
 
     if (!options.scenes.empty()) { plan.scenes = options.scenes; }
     if (plan.scenes.empty()) {
-        throw Error(ExitCode::kUsage, "SCENE is required: on the command line or as `scenes` in the config's [bench]");
+        throw Error(ExitCode::kUsage,
+                    "SCENE is required: on the command line or as `scenes` in the config's [bench]");
     }
     if (options.repeats > 0) { plan.repeats = options.repeats; }
     if (plan.series.empty()) { plan.series.push_back({"frame", {0}, {default_size_px}}); }
@@ -195,7 +204,8 @@ std::vector<DrawnViews> viewsOf(const BenchPlan& plan, const std::string& scene,
     std::vector<DrawnViews> drawn;
     for (const BenchView& view : plan.views) {
         if (!belongsTo(view, scene)) { continue; }
-        const auto same = std::ranges::find_if(drawn, [&](const DrawnViews& other) { return other.run.load == view.run.load; });
+        const auto same = std::ranges::find_if(
+            drawn, [&](const DrawnViews& other) { return other.run.load == view.run.load; });
         (same != drawn.end() ? *same : drawn.emplace_back(DrawnViews{view.run, {}})).views.push_back(view);
     }
     if (drawn.empty()) { drawn.push_back({run, {{"", {scene}, run}}}); }

@@ -14,19 +14,23 @@ namespace binosplat {
 
 namespace {
 
-double pixelsOf(const BenchResult& result) { return static_cast<double>(result.size_px.x) * static_cast<double>(result.size_px.y); }
+double pixelsOf(const BenchResult& result) {
+    return static_cast<double>(result.size_px.x) * static_cast<double>(result.size_px.y);
+}
 
 std::optional<double> errorOf(const BenchResult& result) {
     const OriginScores* all = scoresOf(result, "all");
     return all == nullptr ? std::nullopt : std::optional(all->psnrDb());
 }
 
-std::optional<double> seenErrorOf(const BenchResult& result) { return result.seen ? std::optional(result.seen->psnrDb()) : std::nullopt; }
+std::optional<double> seenErrorOf(const BenchResult& result) {
+    return result.seen ? std::optional(result.seen->psnrDb()) : std::nullopt;
+}
 
 // One panel per point whose methods have an error: a series of points per mode; the points of the Pareto
 // front are joined if `draws_front`.
-std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std::optional<double> (*psnrDbOf)(const BenchResult&),
-                                   bool draws_front) {
+std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label,
+                                   std::optional<double> (*psnrDbOf)(const BenchResult&), bool draws_front) {
     std::vector<PlotPanel> panels;
     for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
         const BenchResult& first = run.results[begin];
@@ -34,7 +38,9 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
         panel.x_scale = panel.y_scale = Scale::kLinear;
         PlotLine front{.label = "Pareto front", .dots = false};
         std::map<std::optional<Mode>, std::size_t> methods;  // by mode
-        for (end = begin; end < run.results.size() && samePoint(first, run.results[end]); ++end) { ++methods[run.results[end].mode]; }
+        for (end = begin; end < run.results.size() && samePoint(first, run.results[end]); ++end) {
+            ++methods[run.results[end].mode];
+        }
         for (std::size_t i = begin; i < end; ++i) {
             const BenchResult& result = run.results[i];
             const std::optional<double> psnr_db = psnrDbOf(result);
@@ -61,7 +67,9 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
 
 // Results that share a panel: equal in everything but splats and size.
 using Group = std::array<std::string, 4>;
-Group groupOf(const BenchResult& result) { return {result.scene, result.series, result.view, result.headset}; }
+Group groupOf(const BenchResult& result) {
+    return {result.scene, result.series, result.view, result.headset};
+}
 
 struct Extent {
     std::set<std::uint64_t> splats;
@@ -85,16 +93,22 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
     const Extent extent = extentOf(run, group);
     const bool against_splats = extent.splats.size() > 1 && extent.pixels.size() == 1;
     const std::string x_label = against_splats ? "splats in the scene" : "pixels per eye";
-    const std::string fixed = against_splats ? fmt::format("{}x{}", extent.first->size_px.x, extent.first->size_px.y)
-                                             : fmt::format("{} splats", extent.first->splats);
-    PlotPanel totals{.title = fmt::format("{}, {}: each method", group[0], fixed), .x_label = x_label, .y_label = "ms"};
-    PlotPanel passes{.title = fmt::format("{}, {}: passes of shared", group[0], fixed), .x_label = x_label, .y_label = "GPU time, ms"};
+    const std::string fixed = against_splats
+                                  ? fmt::format("{}x{}", extent.first->size_px.x, extent.first->size_px.y)
+                                  : fmt::format("{} splats", extent.first->splats);
+    PlotPanel totals{
+        .title = fmt::format("{}, {}: each method", group[0], fixed), .x_label = x_label, .y_label = "ms"};
+    PlotPanel passes{.title = fmt::format("{}, {}: passes of shared", group[0], fixed),
+                     .x_label = x_label,
+                     .y_label = "GPU time, ms"};
     for (const BenchResult& result : run.results) {
         if (groupOf(result) != group) { continue; }
         const double x = against_splats ? static_cast<double>(result.splats) : pixelsOf(result);
         lineOf(totals, result.method).points.emplace_back(x, result.total_ms);
         if (result.mode != Mode::kShared || result.resolution < 1.0) { continue; }
-        for (const auto& [name, ms] : byPass(result.pass_ms)) { lineOf(passes, name).points.emplace_back(x, ms); }
+        for (const auto& [name, ms] : byPass(result.pass_ms)) {
+            lineOf(passes, name).points.emplace_back(x, ms);
+        }
     }
     return {totals, passes};
 }
@@ -103,7 +117,8 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
 
 std::string benchPlot(const BenchRun& run) {
     std::vector<PlotPanel> panels = errorPanels(run, "PSNR of the affiliated eye, dB", errorOf, true);
-    std::ranges::move(errorPanels(run, "PSNR of what the eye sees of the error, dB", seenErrorOf, false), std::back_inserter(panels));
+    std::ranges::move(errorPanels(run, "PSNR of what the eye sees of the error, dB", seenErrorOf, false),
+                      std::back_inserter(panels));
     std::set<Group> done;
     for (const BenchResult& result : run.results) {
         const Group group = groupOf(result);

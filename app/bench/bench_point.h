@@ -36,8 +36,9 @@ public:
     // `compared`: for pictures that are read and compared, with the origin of each pixel and counters that
     // cost time; otherwise as in the viewer. `keep_history`: see FrameSettings. `views`: what is seen, if the
     // cameras' pictures cover more. `chosen`: in place of the method's resolution and bound.
-    Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method, bool compared = false,
-                    bool keep_history = false, const Cameras* views = nullptr, const std::optional<GovernedSettings>& chosen = {});
+    Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method,
+                    bool compared = false, bool keep_history = false, const Cameras* views = nullptr,
+                    const std::optional<GovernedSettings>& chosen = {});
 
     // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees
     // the buffers of all other methods.

@@ -18,7 +18,9 @@ namespace {
 constexpr std::array<const char*, 3> kGroups{"reprojected", "interpolated", "patched"};
 
 std::uint8_t groupOf(PixelOrigin origin) {
-    return origin == PixelOrigin::kReprojected ? 0 : origin == PixelOrigin::kGap || origin == PixelOrigin::kHole ? 1 : 2;
+    return origin == PixelOrigin::kReprojected                           ? 0
+           : origin == PixelOrigin::kGap || origin == PixelOrigin::kHole ? 1
+                                                                         : 2;
 }
 
 // Empty if it is not wanted, or if the network needs more pixels.
@@ -31,8 +33,9 @@ std::optional<double> lpipsOf(const Image& a, const Image& b, const Lpips* lpips
 double squareOf(const Image& a, const Image& b, std::size_t pixel) {
     double sum = 0.0;
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        const double difference = static_cast<double>(a.values[pixel * static_cast<std::size_t>(a.channels) + channel]) -
-                                  static_cast<double>(b.values[pixel * static_cast<std::size_t>(b.channels) + channel]);
+        const double difference =
+            static_cast<double>(a.values[pixel * static_cast<std::size_t>(a.channels) + channel]) -
+            static_cast<double>(b.values[pixel * static_cast<std::size_t>(b.channels) + channel]);
         sum += difference * difference;
     }
     return sum / 3.0;
@@ -50,7 +53,8 @@ SeenScores measureSeen(const Image& full, const Image& picture, std::span<const 
     const glm::uvec2 tiles = tilesOf(full.size_px);
     std::vector<double> errors(shares.size(), 0.0);
     for (std::size_t pixel = 0; pixel < full.pixelCount(); ++pixel) {
-        const std::size_t x = pixel % full.size_px.x / gpu::kTileSize, y = pixel / full.size_px.x / gpu::kTileSize;
+        const std::size_t x = pixel % full.size_px.x / gpu::kTileSize,
+                          y = pixel / full.size_px.x / gpu::kTileSize;
         errors[y * tiles.x + x] += 3.0 * squareOf(full, picture, pixel);
     }
     SeenScores seen;
@@ -68,21 +72,29 @@ SeenScores measureSeen(const Image& full, const Image& picture, std::span<const 
 PhotoScores compareWithPhoto(const Image& picture, const Image& photo, const Lpips* lpips) {
     Image shown = picture;
     for (float& value : shown.values) { value = std::clamp(value, 0.0f, 1.0f); }
-    return {compare(shown, photo).psnrDb(), ssim(shown, photo, Border::kZero).mean().value_or(1.0), lpipsOf(shown, photo, lpips)};
+    return {compare(shown, photo).psnrDb(), ssim(shown, photo, Border::kZero).mean().value_or(1.0),
+            lpipsOf(shown, photo, lpips)};
 }
 
-std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
-                                         std::span<const std::uint8_t> pixel_classes, const QualityOptions& options) {
+std::vector<OriginScores> measureQuality(const Image& full, const Image& picture,
+                                         std::span<const std::uint32_t> tile_kinds,
+                                         std::span<const std::uint8_t> pixel_classes,
+                                         const QualityOptions& options) {
     std::optional<PixelScores> ssim_scores, flip_scores;
     if (options.ssim) { ssim_scores = ssim(full, picture); }
     // FLIP is not defined for pictures whose pixels are wider than a degree.
     const double pixels_per_degree = pixelsPerDegree(options.focal_px);
-    if (options.flip && pixels_per_degree >= kFlipLeastPixelsPerDegree && pixels_per_degree <= kFlipMostPixelsPerDegree) {
+    if (options.flip && pixels_per_degree >= kFlipLeastPixelsPerDegree &&
+        pixels_per_degree <= kFlipMostPixelsPerDegree) {
         flip_scores = flip(full, picture, pixels_per_degree);
     }
 
-    std::vector<OriginScores> scores{
-        {"all", full.pixelCount(), compare(full, picture).mean_square, {}, {}, lpipsOf(full, picture, options.lpips)}};
+    std::vector<OriginScores> scores{{"all",
+                                      full.pixelCount(),
+                                      compare(full, picture).mean_square,
+                                      {},
+                                      {},
+                                      lpipsOf(full, picture, options.lpips)}};
     if (ssim_scores) { scores[0].ssim = ssim_scores->mean(); }
     if (flip_scores) { scores[0].flip = flip_scores->mean(); }
 
@@ -96,8 +108,8 @@ std::vector<OriginScores> measureQuality(const Image& full, const Image& picture
     }
     for (std::uint8_t group = 0; group < kGroups.size(); ++group) {
         if (counts[group] == 0) { continue; }
-        OriginScores& one =
-            scores.emplace_back(OriginScores{kGroups[group], counts[group], sums[group] / static_cast<double>(counts[group]), {}, {}, {}});
+        OriginScores& one = scores.emplace_back(OriginScores{
+            kGroups[group], counts[group], sums[group] / static_cast<double>(counts[group]), {}, {}, {}});
         if (ssim_scores) { one.ssim = ssim_scores->meanWhere(groups, group); }
         if (flip_scores) { one.flip = flip_scores->meanWhere(groups, group); }
     }

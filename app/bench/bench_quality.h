@@ -32,8 +32,10 @@ struct QualityOptions {
 
 // "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. Scores not
 // defined for pictures of this size or angle (FLIP, LPIPS) are left out.
-std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
-                                         std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
+std::vector<OriginScores> measureQuality(const Image& full, const Image& picture,
+                                         std::span<const std::uint32_t> tile_kinds,
+                                         std::span<const std::uint8_t> pixel_classes,
+                                         const QualityOptions& options);
 
 // The part of the error that is visible to an eye with this gaze.
 struct SeenScores {

@@ -13,17 +13,23 @@ namespace binosplat {
 
 namespace {
 
-const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like, std::optional<Mode> mode) {
-    const auto found = std::ranges::find_if(
-        results, [&](const BenchResult& other) { return other.mode == mode && other.resolution == 1.0 && samePoint(other, like); });
+const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like,
+                            std::optional<Mode> mode) {
+    const auto found = std::ranges::find_if(results, [&](const BenchResult& other) {
+        return other.mode == mode && other.resolution == 1.0 && samePoint(other, like);
+    });
     return found == results.end() ? nullptr : &*found;
 }
 
 std::optional<double> ratioTo(const BenchResult& result, const BenchResult* other) {
     if (other == nullptr || !(other->total_ms > 0.0)) { return std::nullopt; }
-    if (result.frame_ms.empty() || result.frame_ms.size() != other->frame_ms.size()) { return result.total_ms / other->total_ms; }
+    if (result.frame_ms.empty() || result.frame_ms.size() != other->frame_ms.size()) {
+        return result.total_ms / other->total_ms;
+    }
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < result.frame_ms.size(); ++i) { ratios.push_back(result.frame_ms[i] / other->frame_ms[i]); }
+    for (std::size_t i = 0; i < result.frame_ms.size(); ++i) {
+        ratios.push_back(result.frame_ms[i] / other->frame_ms[i]);
+    }
     return median(ratios);
 }
 
@@ -31,10 +37,14 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
     const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
     if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
-    const auto pairs = static_cast<double>(counterOf(*shared, shared->dominant == kLeft ? "tile_pairs_right" : "tile_pairs_left"));
-    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated").value_or(0.0) / pairs : 0.0;
+    const auto pairs = static_cast<double>(
+        counterOf(*shared, shared->dominant == kLeft ? "tile_pairs_right" : "tile_pairs_left"));
+    const double pair_ms =
+        pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated").value_or(0.0) / pairs
+                    : 0.0;
     if (!(pair_ms > 0.0)) { return std::nullopt; }
-    return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection").value_or(0.0) / static_cast<double>(moved) / pair_ms;
+    return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection").value_or(0.0) /
+           static_cast<double>(moved) / pair_ms;
 }
 
 // True if a result takes part in the comparison of error and time.
@@ -42,7 +52,9 @@ bool isPair(const BenchResult& result) { return result.mode && result.mode != Mo
 
 std::optional<double> meanSquareOf(const BenchResult& result) {
     const OriginScores* all = scoresOf(result, "all");
-    if (all == nullptr && result.resolution == 1.0 && result.mode && rendersBothInFull(*result.mode)) { return 0.0; }
+    if (all == nullptr && result.resolution == 1.0 && result.mode && rendersBothInFull(*result.mode)) {
+        return 0.0;
+    }
     return isPair(result) && all != nullptr ? std::optional(all->mean_square) : std::nullopt;
 }
 
@@ -53,7 +65,9 @@ std::string bareSceneName(const std::string& scene) {
     return isBuiltin(scene) ? scene : (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-std::string modeNameOf(const BenchResult& result) { return result.mode ? std::string(nameOf(*result.mode)) : "twin"; }
+std::string modeNameOf(const BenchResult& result) {
+    return result.mode ? std::string(nameOf(*result.mode)) : "twin";
+}
 
 bool samePoint(const BenchResult& a, const BenchResult& b) {
     const auto point = [](const BenchResult& r) {
@@ -67,12 +81,15 @@ std::string namePoint(const BenchResult& result) {
     for (const std::string& part : {result.view, result.headset}) {
         if (!part.empty()) { name += ", " + part; }
     }
-    return fmt::format("{}, {} splats ({}), {}x{} per eye", name, result.splats, result.backbone, result.size_px.x, result.size_px.y);
+    return fmt::format("{}, {} splats ({}), {}x{} per eye", name, result.splats, result.backbone,
+                       result.size_px.x, result.size_px.y);
 }
 
 void compareModes(std::vector<BenchResult>& results) {
     for (BenchResult& result : results) {
-        if (result.mode == Mode::kMono) { result.ratio_to_twin = ratioTo(result, findMode(results, result, std::nullopt)); }
+        if (result.mode == Mode::kMono) {
+            result.ratio_to_twin = ratioTo(result, findMode(results, result, std::nullopt));
+        }
         if (!result.mode) { continue; }  // another clock
         result.ratio_to_two_pass = ratioTo(result, findMode(results, result, Mode::kTwoPass));
         const BenchResult* shared = findMode(results, result, Mode::kShared);
@@ -85,11 +102,13 @@ void markFront(std::vector<BenchResult>& results) {
     const auto beats = [&](const BenchResult& other, const BenchResult& result) {
         if (!samePoint(other, result)) { return false; }
         const std::optional<double> theirs = meanSquareOf(other), ours = meanSquareOf(result);
-        return theirs && *theirs <= *ours && other.total_ms <= result.total_ms && (*theirs < *ours || other.total_ms < result.total_ms);
+        return theirs && *theirs <= *ours && other.total_ms <= result.total_ms &&
+               (*theirs < *ours || other.total_ms < result.total_ms);
     };
     for (BenchResult& result : results) {
-        result.on_front = meanSquareOf(result).has_value() &&
-                          std::ranges::none_of(results, [&](const BenchResult& other) { return beats(other, result); });
+        result.on_front =
+            meanSquareOf(result).has_value() &&
+            std::ranges::none_of(results, [&](const BenchResult& other) { return beats(other, result); });
     }
 }
 

@@ -11,8 +11,11 @@ namespace binosplat {
 
 class BenchScene {
 public:
-    BenchScene(const Context& context, const RunOptions& run, const std::string& source, std::uint64_t builtin_splats = 0)
-        : opened_(builtin_splats == 0 && mayLive(source, run.load) ? openLive(context, source, run, StreamFor::kPictures) : std::nullopt) {
+    BenchScene(const Context& context, const RunOptions& run, const std::string& source,
+               std::uint64_t builtin_splats = 0)
+        : opened_(builtin_splats == 0 && mayLive(source, run.load)
+                      ? openLive(context, source, run, StreamFor::kPictures)
+                      : std::nullopt) {
         if (opened_) { return; }
         scene_ = loadAs(run, source, builtin_splats);
         whole_.emplace(context, scene_);

@@ -14,7 +14,8 @@ namespace binosplat {
 using NamedTimes = std::vector<std::pair<std::string, double>>;
 
 // The stages that have a column, by the names of stagesOf().
-inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
+inline constexpr const char* kStages[] = {"cull+sort",  "dominant", "reprojection",
+                                          "ROI choice", "patch",    "affiliated"};
 
 // The times by the labels of their passes: "dominant project".
 NamedTimes byLabel(const PassTimes& pass_ms);

@@ -10,14 +10,18 @@ namespace binosplat {
 
 namespace {
 
-std::string thousandths(const std::optional<double>& value) { return value ? fmt::format("{:.3f}", *value) : "-"; }
+std::string thousandths(const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "-";
+}
 
 std::string psnrText(const OriginScores* scores) {
     if (scores == nullptr) { return "-"; }
     return scores->mean_square == 0.0 ? "equal" : fmt::format("{:.2f}", scores->psnrDb());
 }
 
-std::string scoreText(const std::optional<double>& score) { return score ? fmt::format("{:.4f}", *score) : "-"; }
+std::string scoreText(const std::optional<double>& score) {
+    return score ? fmt::format("{:.4f}", *score) : "-";
+}
 
 // The sum of a counter that is kept per eye.
 std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
@@ -26,19 +30,25 @@ std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
 
 std::string methodsTable(const std::vector<const BenchResult*>& point, bool with_lpips, std::size_t most) {
     TextColumns columns;
-    std::vector<std::string> head{"method",   "front",   "ms",          "least",        "most",    "/ two-pass", "/ shared",
-                                  "peak MiB", "PSNR dB", "reprojected", "interpolated", "patched", "SSIM",       "FLIP"};
+    std::vector<std::string> head{"method",       "front",    "ms",       "least",   "most",
+                                  "/ two-pass",   "/ shared", "peak MiB", "PSNR dB", "reprojected",
+                                  "interpolated", "patched",  "SSIM",     "FLIP"};
     if (with_lpips) { head.emplace_back("LPIPS"); }
-    for (const char* rest : {"tiles again", "% of work", "bytes a px", "commands", "holes px", "gaps px", "pairs"}) {
+    for (const char* rest :
+         {"tiles again", "% of work", "bytes a px", "commands", "holes px", "gaps px", "pairs"}) {
         head.emplace_back(rest);
     }
     columns.addRow(std::move(head));
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method, r->on_front ? "*" : ""};
-        for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) { row.push_back(fmt::format("{:.3f}", ms)); }
+        for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) {
+            row.push_back(fmt::format("{:.3f}", ms));
+        }
         row.push_back(thousandths(r->ratio_to_two_pass));
         row.push_back(thousandths(r->ratio_to_shared));
-        row.push_back(!r->mode ? "-" : fmt::format("{:.1f}", static_cast<double>(r->peak_gpu_bytes) / (1024.0 * 1024.0)));
+        row.push_back(
+            !r->mode ? "-"
+                     : fmt::format("{:.1f}", static_cast<double>(r->peak_gpu_bytes) / (1024.0 * 1024.0)));
         for (const char* origin : kOrigins) { row.push_back(psnrText(scoresOf(*r, origin))); }
         const OriginScores* all = scoresOf(*r, "all");
         row.push_back(scoreText(all != nullptr ? all->ssim : std::nullopt));
@@ -46,7 +56,8 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
         if (with_lpips) { row.push_back(scoreText(all != nullptr ? all->lpips : std::nullopt)); }
         const bool reprojects = r->counters.contains("tiles_patched");
         row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, "tiles_patched")) : "-");
-        row.push_back(r->counters.contains("work_full") ? fmt::format("{:.1f}", 100.0 * r->work_rendered) : "-");
+        row.push_back(r->counters.contains("work_full") ? fmt::format("{:.1f}", 100.0 * r->work_rendered)
+                                                        : "-");
         row.push_back(reprojects ? fmt::format("{:.1f}", r->stereo_bytes_per_pixel) : "-");
         row.push_back(!r->mode ? "-" : fmt::format("{}", ofBothEyes(*r, "commands")));
         for (const char* name : {"pixels_hole", "pixels_gap"}) {
@@ -88,23 +99,29 @@ std::string benchTable(const BenchRun& run, std::size_t most_columns) {
     std::string table = fmt::format("device: {}\n", run.device);
     for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
         std::vector<const BenchResult*> point;
-        for (end = begin; end < run.results.size() && samePoint(run.results[begin], run.results[end]); ++end) {
+        for (end = begin; end < run.results.size() && samePoint(run.results[begin], run.results[end]);
+             ++end) {
             point.push_back(&run.results[end]);
         }
-        table += fmt::format("\n{}: {}, median of {} frames\n", point[0]->series, namePoint(*point[0]), point[0]->frames);
+        table += fmt::format("\n{}: {}, median of {} frames\n", point[0]->series, namePoint(*point[0]),
+                             point[0]->frames);
         table += methodsTable(point, hasLpips(run.results), most_columns) + timesTable(point, most_columns);
         for (const BenchResult* r : point) {
             if (r->move_cost) {
-                table += fmt::format("  {}: reprojecting a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);
+                table += fmt::format("  {}: reprojecting a tile took as long as rendering {:.0f} pairs\n",
+                                     r->method, *r->move_cost);
             }
             if (r->seen && r->seen->mean_square == 0.0) {
                 table += fmt::format("  {}: the eye sees no error\n", r->method);
             } else if (r->seen) {
-                table += fmt::format("  {}: the eye sees an error of {:.2f} dB, and notices it in {:.2f} % of the tiles that have one\n",
-                                     r->method, r->seen->psnrDb(), 100.0 * r->seen->noticed);
+                table += fmt::format(
+                    "  {}: the eye sees an error of {:.2f} dB, and notices it in {:.2f} % of the tiles that "
+                    "have one\n",
+                    r->method, r->seen->psnrDb(), 100.0 * r->seen->noticed);
             }
             if (r->ratio_to_twin && *r->ratio_to_twin > 0.0) {
-                table += fmt::format("  mono is {:.2f} times as fast as its float64 twin on the CPU\n", 1.0 / *r->ratio_to_twin);
+                table += fmt::format("  mono is {:.2f} times as fast as its float64 twin on the CPU\n",
+                                     1.0 / *r->ratio_to_twin);
             }
         }
     }

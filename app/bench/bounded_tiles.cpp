@@ -9,8 +9,8 @@
 
 namespace binosplat {
 
-BoundedTiles findBoundedTiles(std::span<const float> tile_squares, std::span<const std::uint32_t> kinds, glm::uvec2 size_px,
-                              double bound_db) {
+BoundedTiles findBoundedTiles(std::span<const float> tile_squares, std::span<const std::uint32_t> kinds,
+                              glm::uvec2 size_px, double bound_db) {
     BoundedTiles found;
     if (kinds.empty()) { return found; }
     const glm::uvec2 whole = size_px / gpu::kTileSize;

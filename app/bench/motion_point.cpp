@@ -16,7 +16,9 @@ namespace {
 
 double pairsOf(const FrameResult& frame) {
     double pairs = 0.0;
-    for (const TargetCounters& target : frame.counters.targets) { pairs += static_cast<double>(target.tile_pairs); }
+    for (const TargetCounters& target : frame.counters.targets) {
+        pairs += static_cast<double>(target.tile_pairs);
+    }
     return pairs;
 }
 
@@ -51,15 +53,18 @@ double meanChange(const Image& a, const Image& b) {
 }
 
 // Empty unless the method bounds the errors of tiles that it keeps.
-std::optional<BoundedTiles> boundedTilesOf(const VisibleErrors& visible, StereoFrame& frame, const BenchMethod& method) {
+std::optional<BoundedTiles> boundedTilesOf(const VisibleErrors& visible, StereoFrame& frame,
+                                           const BenchMethod& method) {
     const double bound_db = method.stereo.warp.error_bound_db;
-    if (!hasHistory(method.stereo.mode) || !(bound_db > 0.0) || method.resolution < 1.0) { return std::nullopt; }
+    if (!hasHistory(method.stereo.mode) || !(bound_db > 0.0) || method.resolution < 1.0) {
+        return std::nullopt;
+    }
     const std::span<const float> squares(visible.tile_squares);
     const std::size_t of_one = squares.size() / 2;
     BoundedTiles both;
     for (const int eye : {kLeft, kRight}) {
-        both += findBoundedTiles(squares.subspan(static_cast<std::size_t>(eye) * of_one, of_one), frame.readTileKinds(eye),
-                                 frame.picture(eye).size_px, bound_db);
+        both += findBoundedTiles(squares.subspan(static_cast<std::size_t>(eye) * of_one, of_one),
+                                 frame.readTileKinds(eye), frame.picture(eye).size_px, bound_db);
     }
     return both;
 }
@@ -69,22 +74,28 @@ struct Moved {
     double share = 0.0;
     std::optional<double> mean_square;
 };
-Moved compareMoved(const std::array<Image, 2>& pictures, const std::array<Image, 2>& now, const std::array<Image, 2>& still) {
+Moved compareMoved(const std::array<Image, 2>& pictures, const std::array<Image, 2>& now,
+                   const std::array<Image, 2>& still) {
     double squares = 0.0;
     std::size_t moved = 0, pixels = 0;
     for (std::size_t e = 0; e < now.size(); ++e) {
         const Image change = subtract(now[e], still[e]), error = subtract(pictures[e], now[e]);
         for (std::size_t pixel = 0; pixel < now[e].pixelCount(); ++pixel, ++pixels) {
             const auto channels = [&](const Image& of) { return std::span(of.values).subspan(3 * pixel, 3); };
-            if (std::ranges::none_of(channels(change), [](float c) { return std::abs(static_cast<double>(c)) >= kLeastMoved; })) {
+            if (std::ranges::none_of(channels(change), [](float c) {
+                    return std::abs(static_cast<double>(c)) >= kLeastMoved;
+                })) {
                 continue;
             }
             ++moved;
-            for (const float c : channels(error)) { squares += static_cast<double>(c) * static_cast<double>(c); }
+            for (const float c : channels(error)) {
+                squares += static_cast<double>(c) * static_cast<double>(c);
+            }
         }
     }
     if (moved == 0) { return {}; }
-    return {static_cast<double>(moved) / static_cast<double>(pixels), squares / (3.0 * static_cast<double>(moved))};
+    return {static_cast<double>(moved) / static_cast<double>(pixels),
+            squares / (3.0 * static_cast<double>(moved))};
 }
 
 }  // namespace
@@ -95,13 +106,19 @@ void setTimes(MotionFrame& frame, const FrameResult& result) {
     frame.pass_ms = byLabel(result.gpu_ms);
 }
 
-MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name,
-                         double frame_ms)
-    : camera_(run.camera), shared_(plainMethod(Mode::kShared, run)), frames_(context, scene), name_(std::move(name)), frame_ms_(frame_ms) {
+MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run,
+                         const BenchPlan& plan, std::string name, double frame_ms)
+    : camera_(run.camera),
+      shared_(plainMethod(Mode::kShared, run)),
+      frames_(context, scene),
+      name_(std::move(name)),
+      frame_ms_(frame_ms) {
     for (const BenchMethod& method : plan.methods) {
         if (method.stereo.mode == Mode::kMono) { continue; }
         MethodHistory& sequence = sequences_.emplace_back(MethodHistory{method, {}});
-        if (frame_ms > 0.0 && method.stereo.mode == Mode::kTemporal && method.resolution == 1.0) { sequence.governor.emplace(); }
+        if (frame_ms > 0.0 && method.stereo.mode == Mode::kTemporal && method.resolution == 1.0) {
+            sequence.governor.emplace();
+        }
     }
     if (run.stereo.axes == Axes::kStay) { axes_.emplace(glm::radians(kAxesMarginDegrees)); }
 }
@@ -114,7 +131,8 @@ MotionPoint::Posed MotionPoint::posed(const Cameras& cameras) {
 
 MethodFrames::Rendered MotionPoint::render(const Posed& pose, const BenchMethod& method, bool keep_history,
                                            const std::optional<GovernedSettings>& chosen) {
-    return frames_.render(pose.pictures, camera_, method, false, keep_history, axes_ ? &pose.views : nullptr, chosen);
+    return frames_.render(pose.pictures, camera_, method, false, keep_history, axes_ ? &pose.views : nullptr,
+                          chosen);
 }
 
 Image MotionPoint::show(const Posed& pose, const MethodFrames::Rendered& rendered, int eye) const {
@@ -172,7 +190,8 @@ void MotionPoint::rememberStill(const Cameras& cameras) {
 
 MotionPoint::FullRender MotionPoint::renderFull(const Posed& pose) {
     const MethodFrames::Rendered both = render(pose, shared_, false);
-    FullRender full{{show(pose, both, kLeft), show(pose, both, kRight)}, {}, std::max(pairsOf(both.result), 1.0)};
+    FullRender full{
+        {show(pose, both, kLeft), show(pose, both, kRight)}, {}, std::max(pairsOf(both.result), 1.0)};
     if (!camera_.headset.empty()) {
         if (!lens_) { lens_.emplace(pose.views); }
         full.seen = lens_->show(full.eyes);
@@ -180,7 +199,8 @@ MotionPoint::FullRender MotionPoint::renderFull(const Posed& pose) {
     return full;
 }
 
-void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
+void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s,
+                       std::vector<MotionFrame>& result) {
     std::map<std::optional<Order>, FullRender> full_by_order;
     const Posed pose = posed(cameras);
     for (MethodHistory& sequence : sequences_) {
@@ -217,7 +237,9 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
             row.visible = findVisibleErrors(pictures, full.eyes);
             if (lens_) { row.seen = lens_->find(lens_->show(pictures), full.seen); }
             // If axes stay, tiles of the view are not the picture's.
-            if (!sequence.governor && !axes_) { row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method); }
+            if (!sequence.governor && !axes_) {
+                row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method);
+            }
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);
                 row.moved_share = moved.share;

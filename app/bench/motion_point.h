@@ -18,8 +18,8 @@ class MotionPoint {
 public:
     // `frame_ms`: what a frame of `temporal` may take, or 0; a governor then chooses its resolution and
     // bound.
-    MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name,
-                double frame_ms = 0.0);
+    MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan,
+                std::string name, double frame_ms = 0.0);
     // Repeats what `timed` chose for the same poses, however long frames take now.
     void chooseAs(const MotionPoint& timed);
 

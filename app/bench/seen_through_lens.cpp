@@ -21,7 +21,8 @@ std::vector<double> sharesOf(const LensView& lens, int side, const glm::dvec3& l
             const glm::dvec2 middle_px = tile * (glm::dvec2(x, y) + 0.5);
             const double cosine = glm::dot(lens.directionAt(middle_px, side), glm::normalize(lens_centre));
             const double angle_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
-            shares.push_back(reference::seenShare(lens.solidAngleAt(middle_px), angle_rad, glm::radians(kEyesTurn_deg)));
+            shares.push_back(
+                reference::seenShare(lens.solidAngleAt(middle_px), angle_rad, glm::radians(kEyesTurn_deg)));
         }
     }
     return shares;

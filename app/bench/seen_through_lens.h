@@ -22,7 +22,8 @@ public:
     // For pictures from show(). An eye is assumed to resolve as `price` and `tile_ranges` have it
     // (reference::seenShare), and to look anywhere within kEyesTurn_deg of its lens's centre, whatever
     // foveation a method has.
-    [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full) const {
+    [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures,
+                                     const std::array<Image, 2>& full) const {
         return findSeenErrors(pictures, full, sights_);
     }
 

@@ -16,12 +16,12 @@ namespace binosplat {
 
 namespace {
 
-const OptionDescription kConfig{
-    {"config", "", kRender | kBench | kView, "FILE", "TOML file with any of these options; the command line wins"},
-    "",
-    "",
-    {},
-    /*is_file*/ true};
+const OptionDescription kConfig{{"config", "", kRender | kBench | kView, "FILE",
+                                 "TOML file with any of these options; the command line wins"},
+                                "",
+                                "",
+                                {},
+                                /*is_file*/ true};
 
 std::vector<OptionDescription> with(std::vector<OptionDescription> options, const OptionDescription& one) {
     options.push_back(one);
@@ -36,7 +36,9 @@ std::string wordOf(const Settings& line, const char* name) {
 // Uses the scene's own cameras.json if --view is given but no cameras file.
 void addOwnCameras(Settings& line, const Settings& config) {
     const auto view = line.find("view"), scene = line.find("SCENE");
-    if (view == line.end() || scene == line.end() || line.contains("cameras") || config.contains("cameras")) { return; }
+    if (view == line.end() || scene == line.end() || line.contains("cameras") || config.contains("cameras")) {
+        return;
+    }
     if (scene->second.items.size() != 1) { return; }
     const std::filesystem::path cameras = findCameraFile(scene->second.items.front());
     if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
@@ -75,17 +77,20 @@ void settlePanorama(RenderOptions& render, const Settings& line) {
     const Mode mode = around ? Mode::kMono : Mode::kShared;
     const char* const name = around ? "360" : "vr180";
     if (line.contains("mode") && stereo.mode != mode) {
-        throw Error(ExitCode::kUsage, fmt::format("--projection {} and --mode {} contradict each other: its mode is {}", name,
-                                                  nameOf(stereo.mode), nameOf(mode)));
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--projection {} and --mode {} contradict each other: its mode is {}", name,
+                                nameOf(stereo.mode), nameOf(mode)));
     }
     if (stereo.foveation_deg > 0.0) {
-        throw Error(ExitCode::kUsage, fmt::format("--projection {} and --foveation contradict each other", name));
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--projection {} and --foveation contradict each other", name));
     }
     stereo.mode = mode;
     if (!stereo.order) { stereo.order = Order::kDistance; }
-    const glm::uvec2 size = render.run.camera.size_px.value_or(around ? glm::uvec2(4096, 2048) : glm::uvec2(2048));
-    check(size.x == (around ? 2 : 1) * size.y, "--size is {}x{}, must be {} with --projection {}", size.x, size.y,
-          around ? "twice as wide as high" : "as wide as high", name);
+    const glm::uvec2 size =
+        render.run.camera.size_px.value_or(around ? glm::uvec2(4096, 2048) : glm::uvec2(2048));
+    check(size.x == (around ? 2 : 1) * size.y, "--size is {}x{}, must be {} with --projection {}", size.x,
+          size.y, around ? "twice as wide as high" : "as wide as high", name);
     render.run.camera.size_px = size;
 }
 
@@ -96,19 +101,25 @@ Options makeRender(const Settings& given) {
     render.run = readRun(line, {"view"}, line.contains("path") ? withHistory() : RunOptions());
     render = readRows(renderRows(), line, render);
     if (render.projection != Projection::kFlat) { settlePanorama(render, line); }
-    const bool both_eyes = render.run.stereo.mode != Mode::kMono, in_one = render.video || render.projection == Projection::kVr180;
+    const bool both_eyes = render.run.stereo.mode != Mode::kMono,
+               in_one = render.video || render.projection == Projection::kVr180;
     if (both_eyes && in_one && !line.contains("layout")) { render.layout = PictureLayout::kSideBySide; }
     if (const std::optional<glm::uvec2>& size = render.run.camera.size_px; render.video && size) {
-        check(size->x % 2 == 0 && size->y % 2 == 0, "--size is {}x{}, must be even with --video", size->x, size->y);
+        check(size->x % 2 == 0 && size->y % 2 == 0, "--size is {}x{}, must be even with --video", size->x,
+              size->y);
     }
     if (render.video && both_eyes && render.layout == PictureLayout::kSeparate) {
-        throw Error(ExitCode::kUsage, "--video and --layout separate contradict each other: a film has both eyes in one picture");
+        throw Error(
+            ExitCode::kUsage,
+            "--video and --layout separate contradict each other: a film has both eyes in one picture");
     }
     if (render.layout != PictureLayout::kSeparate && render.run.stereo.mode == Mode::kMono) {
         throw Error(ExitCode::kUsage, "--layout and --mode mono contradict each other: there is one eye");
     }
     for (const char* key : {"path-axes", "from", "seconds", "rate", "video", "resume"}) {
-        if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
+        if (line.contains(key) && render.path.empty()) {
+            throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key));
+        }
     }
     return render;
 }
@@ -120,17 +131,22 @@ void requireBenchKind(const BenchOptions& bench) {
     const auto refuse = [](bool wrong, const char* message) {
         if (wrong) { throw Error(ExitCode::kUsage, message); }
     };
-    refuse(!bench.motion_file.empty() && !bench.photos_folder.empty(), "--motion and --photos contradict each other, must be one of them");
+    refuse(!bench.motion_file.empty() && !bench.photos_folder.empty(),
+           "--motion and --photos contradict each other, must be one of them");
     refuse(!bench.photos_folder.empty() && !cameras, "--photos is given without --cameras");
     refuse(!bench.photos_folder.empty() && bench.run.camera.size_px.has_value(),
            "--photos and --size contradict each other: pictures have the photographs' size");
     refuse(!bench.motion_file.empty() && !bench.lpips_weights.empty(),
            "--motion and --lpips contradict each other: frames in motion are compared by PSNR alone");
-    refuse(bench.orders && (!bench.motion_file.empty() || !bench.photos_folder.empty() || !bench.lpips_weights.empty()),
-           "--orders and --motion, --photos or --lpips contradict each other: orders are compared with each pixel's own order, by PSNR");
+    refuse(bench.orders &&
+               (!bench.motion_file.empty() || !bench.photos_folder.empty() || !bench.lpips_weights.empty()),
+           "--orders and --motion, --photos or --lpips contradict each other: orders are compared with each "
+           "pixel's own order, by PSNR");
     const bool measures_speed = bench.motion_file.empty() && bench.photos_folder.empty() && !bench.orders;
-    refuse(bench.repeats != 0 && !measures_speed, "--repeats and --motion, --photos or --orders contradict each other");
-    refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
+    refuse(bench.repeats != 0 && !measures_speed,
+           "--repeats and --motion, --photos or --orders contradict each other");
+    refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(),
+           "--every is given without --motion or --photos");
 }
 
 Options makeBench(const Settings& given) {
@@ -160,7 +176,9 @@ void readOwnPreferences(RunOptions& standard, std::vector<SettingsTable>& view) 
         standard.stereo = runOptions(configLayer(file, tables, {"view"}), standard).stereo;
         std::erase_if(tables, [](const SettingsTable& table) { return table.name != "view"; });
         view = std::move(tables);
-    } catch (const Error& error) { FrameLog::print(fmt::format("{}; preferences are not used", error.what())); }
+    } catch (const Error& error) {
+        FrameLog::print(fmt::format("{}; preferences are not used", error.what()));
+    }
 }
 
 Options makeView(const Settings& given) {
@@ -176,7 +194,9 @@ Options makeView(const Settings& given) {
         if (!line.contains("desktop") || !line.contains(other)) { continue; }
         throw Error(ExitCode::kUsage, fmt::format("--desktop and --{} contradict each other", other));
     }
-    if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
+    if (line.contains("out") && !view.simulate) {
+        throw Error(ExitCode::kUsage, "--out is given without --simulate");
+    }
     RunOptions standard = withHistory();
     standard.stereo.half_periphery = true;
     standard.stereo.axes = Axes::kStay;
@@ -188,13 +208,20 @@ Options makeView(const Settings& given) {
 
 Options makeInfo(const Settings& line) { return InfoOptions{wordOf(line, "SCENE"), runOptions(line).load}; }
 
-Options makeScene(const Settings& line) { return readRows(sceneRows(), line, SceneOptions{.name = wordOf(line, "NAME"), .out = {}}); }
+Options makeScene(const Settings& line) {
+    return readRows(sceneRows(), line, SceneOptions{.name = wordOf(line, "NAME"), .out = {}});
+}
 
 Options makeConvert(const Settings& line) {
     const RunOptions run = runOptions(line);
-    const auto convert =
-        readRows(convertRows(), line,
-                 ConvertOptions{wordOf(line, "SCENE"), run.load, wordOf(line, "OUT"), {}, {}, run.camera.cameras_file, run.device});
+    const auto convert = readRows(convertRows(), line,
+                                  ConvertOptions{wordOf(line, "SCENE"),
+                                                 run.load,
+                                                 wordOf(line, "OUT"),
+                                                 {},
+                                                 {},
+                                                 run.camera.cameras_file,
+                                                 run.device});
     for (const char* key : {"cameras", "device"}) {
         if (line.contains(key) && !convert.keep && !convert.isStreamed()) {
             throw Error(ExitCode::kUsage, fmt::format("--{} is given without --keep", key));
@@ -206,25 +233,35 @@ Options makeConvert(const Settings& line) {
         }
     }
     if (convert.keep && convert.keep->unit == Keep::kBytes && convert.isStreamed()) {
-        throw Error(ExitCode::kUsage, "--keep is a size, but OUT is a folder: must be a share or a number of splats");
+        throw Error(ExitCode::kUsage,
+                    "--keep is a size, but OUT is a folder: must be a share or a number of splats");
     }
     return convert;
 }
 
 Options makeCompare(const Settings& line) {
-    return readRows(compareRows(), line, CompareOptions{.first = wordOf(line, "A"), .second = wordOf(line, "B"), .lpips_weights = {}});
+    return readRows(
+        compareRows(), line,
+        CompareOptions{.first = wordOf(line, "A"), .second = wordOf(line, "B"), .lpips_weights = {}});
 }
 
-Options makeStability(const Settings& line) { return readRows(stabilityRows(), line, StabilityOptions{{}, runOptions(line).device}); }
+Options makeStability(const Settings& line) {
+    return readRows(stabilityRows(), line, StabilityOptions{{}, runOptions(line).device});
+}
 
-Options makeKernels(const Settings& line) { return readRows(kernelsRows(), line, KernelsOptions{{}, runOptions(line).device, {}}); }
+Options makeKernels(const Settings& line) {
+    return readRows(kernelsRows(), line, KernelsOptions{{}, runOptions(line).device, {}});
+}
 
 Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(line, "KIND"))}; }
 
 constexpr const char* kCompareFooter =
-    "Prints one `name value` per line. psnr: dB over the stored R, G, B values; inf if the pictures are equal. ssim: 1 if they\n"
-    "are equal. flip and lpips: 0 if they are equal. The last three clamp values to 0 to 1. Of the frames of two paths: pictures\n"
-    "(how many), psnr, psnr_least (of the worst one), and change: how much A changes from frame to frame, over how much B does.";
+    "Prints one `name value` per line. psnr: dB over the stored R, G, B values; inf if the pictures are "
+    "equal. ssim: 1 if they\n"
+    "are equal. flip and lpips: 0 if they are equal. The last three clamp values to 0 to 1. Of the frames of "
+    "two paths: pictures\n"
+    "(how many), psnr, psnr_least (of the worst one), and change: how much A changes from frame to frame, "
+    "over how much B does.";
 
 }  // namespace
 
@@ -240,13 +277,16 @@ std::span<const Command> commands() {
         {"bench",
          kBench,
          "Measure modes over scenes, splat counts and picture sizes",
-         {{"SCENE", "files, directories, builtin:NAME, or addresses (default: those of the config)", /*required*/ false, /*many*/ true}},
+         {{"SCENE", "files, directories, builtin:NAME, or addresses (default: those of the config)",
+           /*required*/ false, /*many*/ true}},
          with(describe(benchRows()), kConfig),
          makeBench},
         {"view",
          kView,
          "Show a scene in an OpenXR headset or, without one, in a window",
-         {{"SCENE", "file, directory, builtin:NAME, or http or https address (default: a list to choose from)", /*required*/ false}},
+         {{"SCENE",
+           "file, directory, builtin:NAME, or http or https address (default: a list to choose from)",
+           /*required*/ false}},
          with(describe(viewRows()), kConfig),
          makeView},
         {"info", kInfo, "Print what a scene holds", {scene}, {}, makeInfo},
@@ -265,7 +305,9 @@ std::span<const Command> commands() {
         {"compare",
          kCompare,
          "Compare two pictures, or the frames of two paths: PSNR, SSIM, FLIP and LPIPS",
-         {{"A", "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two), or the folder of render --path"},
+         {{"A",
+           "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two), or the folder of render "
+           "--path"},
           {"B", "picture of the same size, or folder of the same frames"}},
          describe(compareRows()),
          makeCompare,
@@ -276,7 +318,12 @@ std::span<const Command> commands() {
          {},
          describe(stabilityRows()),
          makeStability},
-        {"kernels", kKernels, "Compile every GPU kernel and print the driver's statistics", {}, describe(kernelsRows()), makeKernels},
+        {"kernels",
+         kKernels,
+         "Compile every GPU kernel and print the driver's statistics",
+         {},
+         describe(kernelsRows()),
+         makeKernels},
         {"document",
          CommandBit{},
          "Print the list of options: markdown, config, man, bash, zsh or fish",
@@ -291,7 +338,8 @@ std::span<const Command> commands() {
 
 std::vector<std::reference_wrapper<const Command>> shownCommands() {
     std::vector<std::reference_wrapper<const Command>> shown;
-    std::ranges::copy_if(commands(), std::back_inserter(shown), [](const Command& command) { return !command.hidden; });
+    std::ranges::copy_if(commands(), std::back_inserter(shown),
+                         [](const Command& command) { return !command.hidden; });
     return shown;
 }
 

@@ -36,7 +36,9 @@ constexpr std::array<std::pair<std::string_view, const char*>, 16> kExamples{{
 }};
 
 std::string tomlOf(const OptionValue& value) {
-    if (const auto* vector = std::get_if<glm::dvec3>(&value)) { return fmt::format("[{}, {}, {}]", vector->x, vector->y, vector->z); }
+    if (const auto* vector = std::get_if<glm::dvec3>(&value)) {
+        return fmt::format("[{}, {}, {}]", vector->x, vector->y, vector->z);
+    }
     return std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", textOf(value)) : textOf(value);
 }
 
@@ -47,14 +49,18 @@ std::string writeLine(const std::string& setting, const std::string& help) {
 template <typename Owner>
 std::string writeRow(const OptionRow<Owner>& row) {
     const OptionValue standard = row.field.value(Owner{});
-    const bool has_none = std::holds_alternative<std::monostate>(standard), is_open = has_none || row.text.by_command;
+    const bool has_none = std::holds_alternative<std::monostate>(standard),
+               is_open = has_none || row.text.by_command;
     std::string value = tomlOf(standard), help = row.text.help;
     if (has_none) {
-        const auto* const found = std::ranges::find(kExamples, row.text.key, &std::pair<std::string_view, const char*>::first);
+        const auto* const found =
+            std::ranges::find(kExamples, row.text.key, &std::pair<std::string_view, const char*>::first);
         value = found == kExamples.end() ? fmt::format("\"{}\"", row.text.value) : found->second;
     }
     if (!row.field.range.empty()) { help += fmt::format(" ({})", row.field.range); }
-    if (*row.text.standard != '\0') { help += fmt::format("; {}: {}", is_open ? "absent" : value, row.text.standard); }
+    if (*row.text.standard != '\0') {
+        help += fmt::format("; {}: {}", is_open ? "absent" : value, row.text.standard);
+    }
     return writeLine(fmt::format("{}{} = {}", is_open ? "# " : "", row.text.key, value), help);
 }
 
@@ -62,9 +68,12 @@ std::string writeRow(const OptionRow<Owner>& row) {
 
 std::string defaultConfig() {
     std::string text =
-        "# Every key of a config and its default. `binosplat render SCENE --out DIR --config configs/default.toml` is the same as no "
-        "config;\n# the command line wins over a config. Keys are the options' names; '_' may stand for '-'. A key may also stand at the "
-        "top, outside\n# of its table. Commented keys have no default of their own, or one for each command. Files are relative to this "
+        "# Every key of a config and its default. `binosplat render SCENE --out DIR --config "
+        "configs/default.toml` is the same as no "
+        "config;\n# the command line wins over a config. Keys are the options' names; '_' may stand for '-'. "
+        "A key may also stand at the "
+        "top, outside\n# of its table. Commented keys have no default of their own, or one for each command. "
+        "Files are relative to this "
         "one. Made from the\n# program's own table (`binosplat document config`).\n";
     const char* table = "";
     for (const OptionRow<RunOptions>& row : runRows()) {
@@ -77,10 +86,13 @@ std::string defaultConfig() {
     text += '\n';
     text += writeLine("[view]", "of `view` alone; its panel saves and loads these");
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { text += writeRow(row); }
-    text += writeLine("# scene-position = [0.0, 0.0, 0.0]", "where the wearer's room begins in the scene, with the next two or not at all");
-    text += writeLine("# scene-orientation = [1.0, 0.0, 0.0, 0.0]", "how it is turned: w, x, y, z of a quaternion");
-    text += writeLine("# units-per-metre = 1.0",
-                      "scene units in a metre of the room; absent: [camera] and metres-per-unit say where and how large");
+    text += writeLine("# scene-position = [0.0, 0.0, 0.0]",
+                      "where the wearer's room begins in the scene, with the next two or not at all");
+    text += writeLine("# scene-orientation = [1.0, 0.0, 0.0, 0.0]",
+                      "how it is turned: w, x, y, z of a quaternion");
+    text += writeLine(
+        "# units-per-metre = 1.0",
+        "scene units in a metre of the room; absent: [camera] and metres-per-unit say where and how large");
     return text;
 }
 

@@ -35,50 +35,63 @@ std::string usage(const Command& command) {
 }
 
 std::string markdownRow(const OptionDescription& option, const std::string& last) {
-    const std::string value = option.text.isFlag() ? "" : fmt::format(" {}", replaced(option.text.value, "|", "\\|"));
-    return fmt::format("| `--{}{}` | {} | {} | {} | {} |\n", option.text.key, value, replaced(option.text.help, "|", "\\|"), option.range,
-                       option.standard, last);
+    const std::string value =
+        option.text.isFlag() ? "" : fmt::format(" {}", replaced(option.text.value, "|", "\\|"));
+    return fmt::format("| `--{}{}` | {} | {} | {} | {} |\n", option.text.key, value,
+                       replaced(option.text.help, "|", "\\|"), option.range, option.standard, last);
 }
 
 std::string commandsWith(const OptionText& text) {
     std::string names;
     for (const Command& command : shownCommands()) {
-        if ((text.commands & command.bit) != 0) { names += fmt::format("{}`{}`", names.empty() ? "" : ", ", command.name); }
+        if ((text.commands & command.bit) != 0) {
+            names += fmt::format("{}`{}`", names.empty() ? "" : ", ", command.name);
+        }
     }
     return (text.commands & kMethods) != 0 ? names + ", `[[methods]]`" : names;
 }
 
 std::string markdown() {
     std::string text =
-        "# Options\n\nMade from the program's own table (`binosplat document markdown`). Every command prints its part with "
+        "# Options\n\nMade from the program's own table (`binosplat document markdown`). Every command "
+        "prints its part with "
         "`--help`.\n\n## Commands\n";
     for (const Command& command : shownCommands()) {
-        text += fmt::format("\n### {}\n\n{}.\n\n```\n{}\n```\n\n", command.name, command.help, usage(command));
+        text +=
+            fmt::format("\n### {}\n\n{}.\n\n```\n{}\n```\n\n", command.name, command.help, usage(command));
         for (const Word& word : command.words) { text += fmt::format("- `{}`: {}\n", word.name, word.help); }
         if (command.own.empty()) { continue; }
-        text += fmt::format("{}| option | | range | default | |\n|---|---|---|---|---|\n", command.words.empty() ? "" : "\n");
-        for (const OptionDescription& option : command.own) { text += markdownRow(option, option.text.required ? "required" : ""); }
+        text += fmt::format("{}| option | | range | default | |\n|---|---|---|---|---|\n",
+                            command.words.empty() ? "" : "\n");
+        for (const OptionDescription& option : command.own) {
+            text += markdownRow(option, option.text.required ? "required" : "");
+        }
     }
     text +=
-        "\n## Shared options\n\nThe last column says which commands have an option. It may also stand in a config file (`--config`), in "
+        "\n## Shared options\n\nThe last column says which commands have an option. It may also stand in a "
+        "config file (`--config`), in "
         "the table that is\n"
-        "named here or at the top, without its dashes; the command line wins. `[[methods]]`: it may also stand in a bench's methods.\n";
+        "named here or at the top, without its dashes; the command line wins. `[[methods]]`: it may also "
+        "stand in a bench's methods.\n";
     const char* table = "";
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(table) != row.text.table) {
             table = row.text.table;
-            text += fmt::format("\n### [{}]\n\n| option | | range | default | commands |\n|---|---|---|---|---|\n", table);
+            text += fmt::format(
+                "\n### [{}]\n\n| option | | range | default | commands |\n|---|---|---|---|---|\n", table);
         }
         text += markdownRow(describe(row), commandsWith(row.text));
     }
     text +=
-        "\n### [view]\n\nConfig files alone, and what the panel saves; beside these, `scene-position`, `scene-orientation` (w, x, y, z) "
-        "and `units-per-metre`, all\nthree or none, and `metres-per-unit`, the measure of a scene that was saved.\n\n| key | | range | "
+        "\n### [view]\n\nConfig files alone, and what the panel saves; beside these, `scene-position`, "
+        "`scene-orientation` (w, x, y, z) "
+        "and `units-per-metre`, all\nthree or none, and `metres-per-unit`, the measure of a scene that was "
+        "saved.\n\n| key | | range | "
         "default |\n|---|---|---|---|\n";
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) {
         const OptionDescription key = describe(row);
-        text +=
-            fmt::format("| `{}` | {} | {} | {} |\n", key.text.key, key.text.help, key.range, key.standard.empty() ? "false" : key.standard);
+        text += fmt::format("| `{}` | {} | {} | {} |\n", key.text.key, key.text.help, key.range,
+                            key.standard.empty() ? "false" : key.standard);
     }
     return text;
 }
@@ -102,22 +115,32 @@ std::string manText(const std::string& text) {
 }
 
 std::string man() {
-    std::string text = fmt::format(".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- {}\n.SH SYNOPSIS\n",
-                                   kVersion, "Gaussian splatting scenes for the two eyes of a VR headset");
-    for (const Command& command : shownCommands()) { text += fmt::format(".B {}\n.br\n", manText(usage(command))); }
+    std::string text = fmt::format(
+        ".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- {}\n.SH SYNOPSIS\n",
+        kVersion, "Gaussian splatting scenes for the two eyes of a VR headset");
+    for (const Command& command : shownCommands()) {
+        text += fmt::format(".B {}\n.br\n", manText(usage(command)));
+    }
     text += ".SH COMMANDS\n";
     for (const Command& command : shownCommands()) {
         text += fmt::format(".SS {}\n{}.\n", manText(usage(command)), manText(command.help));
-        for (const Word& word : command.words) { text += fmt::format(".TP\n.I {}\n{}\n", word.name, manText(word.help)); }
+        for (const Word& word : command.words) {
+            text += fmt::format(".TP\n.I {}\n{}\n", word.name, manText(word.help));
+        }
         for (const OptionDescription& option : optionsOf(command)) {
-            text += fmt::format(".TP\n\\fB\\-\\-{}\\fR{}\n{}\n", manText(option.text.key),
-                                option.text.isFlag() ? "" : fmt::format(" \\fI{}\\fR", manText(option.text.value)), manText(option.help()));
+            text += fmt::format(
+                ".TP\n\\fB\\-\\-{}\\fR{}\n{}\n", manText(option.text.key),
+                option.text.isFlag() ? "" : fmt::format(" \\fI{}\\fR", manText(option.text.value)),
+                manText(option.help()));
         }
     }
     text +=
-        ".SH EXIT STATUS\n0 done; 1 bad input; 2 the command line was not understood; 3 no usable device, runtime or headset; 130 and 143 "
+        ".SH EXIT STATUS\n0 done; 1 bad input; 2 the command line was not understood; 3 no usable device, "
+        "runtime or headset; 130 and 143 "
         "interrupted.\n.SH ENVIRONMENT\n";
-    for (const auto& [name, help] : kEnvironment) { text += fmt::format(".TP\n.B {}\n{}\n", name, manText(help)); }
+    for (const auto& [name, help] : kEnvironment) {
+        text += fmt::format(".TP\n.B {}\n{}\n", name, manText(help));
+    }
     return text;
 }
 
@@ -130,7 +153,8 @@ std::string documentOf(const std::string& kind) {
     if (kind == "bash") { return completionsOfBash(); }
     if (kind == "zsh") { return completionsOfZsh(); }
     if (kind == "fish") { return completionsOfFish(); }
-    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, config, man, bash, zsh or fish", kind));
+    throw Error(ExitCode::kUsage,
+                fmt::format("document: KIND is {}, must be markdown, config, man, bash, zsh or fish", kind));
 }
 
 }  // namespace binosplat

@@ -53,8 +53,9 @@ void addCommand(CLI::App& app, CommandLine& line, const Command& command) {
     line.parser = app.add_subcommand(command.name, command.help);
     if (command.hidden) { line.parser->group(""); }
     for (const Word& word : command.words) {
-        CLI::Option* added = word.many ? line.parser->add_option(word.name, line.words[word.name], word.help)
-                                       : line.parser->add_option(word.name, line.values[word.name], word.help);
+        CLI::Option* added = word.many
+                                 ? line.parser->add_option(word.name, line.words[word.name], word.help)
+                                 : line.parser->add_option(word.name, line.values[word.name], word.help);
         line.given[word.name] = added->required(word.required);
     }
     for (const OptionDescription& option : optionsOf(command)) { addOption(line, option); }
@@ -70,7 +71,9 @@ Settings settingsOf(const CommandLine& line) {
         } else {
             // A flag holds "true", or the text after its =.
             const auto value = line.values.find(key);
-            settings.emplace(key, Setting{"--" + key, {value == line.values.end() ? option->results().back() : value->second}});
+            settings.emplace(
+                key,
+                Setting{"--" + key, {value == line.values.end() ? option->results().back() : value->second}});
         }
     }
     return settings;
@@ -80,8 +83,8 @@ Settings settingsOf(const CommandLine& line) {
 std::vector<std::string> readableArguments(std::vector<std::string> words) {
     std::ranges::reverse(words);
     for (std::string& argument : words) {
-        const bool bare_fraction =
-            argument.size() > 2 && argument[0] == '-' && argument[1] == '.' && std::isdigit(static_cast<unsigned char>(argument[2])) != 0;
+        const bool bare_fraction = argument.size() > 2 && argument[0] == '-' && argument[1] == '.' &&
+                                   std::isdigit(static_cast<unsigned char>(argument[2])) != 0;
         if (bare_fraction) { argument.insert(1, "0"); }
     }
     return words;
@@ -103,19 +106,29 @@ bool looksLikeFile(const std::string& word) {
 std::vector<std::string> withCommand(std::vector<std::string> words) {
     if (words.empty()) { return {"view"}; }
     const std::string word = words.front();
-    if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return words; }
+    if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) {
+        return words;
+    }
     if (isScene(word)) {
-        if (words.size() > 1 && !words[1].starts_with('-') && (isScene(words[1]) || looksLikeFile(words[1]))) {
-            throw Error(ExitCode::kUsage, fmt::format("{} and {} are two scenes, must be one to view at a time", word, words[1]));
+        if (words.size() > 1 && !words[1].starts_with('-') &&
+            (isScene(words[1]) || looksLikeFile(words[1]))) {
+            throw Error(
+                ExitCode::kUsage,
+                fmt::format("{} and {} are two scenes, must be one to view at a time", word, words[1]));
         }
         words.insert(words.begin(), "view");
         return words;
     }
-    check(!looksLikeFile(word), "{}: no such file, must be a scene to view, or a command (see `binosplat --help`)", word);
+    check(!looksLikeFile(word),
+          "{}: no such file, must be a scene to view, or a command (see `binosplat --help`)", word);
     std::string names;
-    for (const Command& command : shownCommands()) { names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name); }
-    throw Error(ExitCode::kUsage,
-                fmt::format("{} is not a command; must be one of: {}, or a scene to view (see `binosplat --help`)", word, names));
+    for (const Command& command : shownCommands()) {
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name);
+    }
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("{} is not a command; must be one of: {}, or a scene to view (see `binosplat --help`)",
+                    word, names));
 }
 
 std::string oneLine(std::string text) {
@@ -140,10 +153,13 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     } catch (const CLI::CallForHelp&) {
         const auto chosen = app.get_subcommands();
         return HelpText{chosen.empty() ? app.help() : chosen.front()->help("binosplat")};
-    } catch (const CLI::CallForVersion&) { return HelpText{app.version() + "\n"}; } catch (const CLI::ParseError& error) {
+    } catch (const CLI::CallForVersion&) {
+        return HelpText{app.version() + "\n"};
+    } catch (const CLI::ParseError& error) {
         throw Error(ExitCode::kUsage, oneLine(error.what()) + " (see `binosplat --help`)");
     }
-    const auto chosen = std::ranges::find_if(lines, [](const CommandLine& line) { return line.parser->parsed(); });
+    const auto chosen =
+        std::ranges::find_if(lines, [](const CommandLine& line) { return line.parser->parsed(); });
     return chosen->command->make(settingsOf(*chosen));
 }
 

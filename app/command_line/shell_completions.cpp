@@ -39,14 +39,16 @@ std::string completionsOfBash() {
         for (const OptionDescription& option : optionsOf(command)) {
             keys.push_back(fmt::format("--{}", option.text.key));
             if (!option.choices.empty()) {
-                values += fmt::format("        {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n", command.name,
-                                      option.text.key, fmt::join(option.choices, " "));
+                values +=
+                    fmt::format("        {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n",
+                                command.name, option.text.key, fmt::join(option.choices, " "));
             } else if (!option.text.isFlag()) {
                 values += fmt::format("        {}:--{}) {} return ;;\n", command.name, option.text.key,
                                       option.is_file ? "COMPREPLY=($(compgen -f -- \"$word\"));" : "");
             }
         }
-        options += fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n", command.name, fmt::join(keys, " "));
+        options += fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n",
+                               command.name, fmt::join(keys, " "));
     }
     return fmt::format(R"(# Completion of binosplat for bash.
 _binosplat() {{
@@ -75,10 +77,14 @@ std::string completionsOfZsh() {
         names += fmt::format("        {}\n", quotedForZsh(fmt::format("{}:{}", command.name, command.help)));
         cases += fmt::format("    {})\n        _arguments", command.name);
         for (const OptionDescription& option : optionsOf(command)) {
-            std::string specification = fmt::format("--{}[{}]", option.text.key, escaped(option.text.help, "[]\\"));
+            std::string specification =
+                fmt::format("--{}[{}]", option.text.key, escaped(option.text.help, "[]\\"));
             if (!option.text.isFlag()) {
-                specification += fmt::format(":{}:{}", escaped(option.text.value, ":[]\\"), option.is_file ? "_files" : "");
-                if (!option.choices.empty()) { specification += fmt::format("({})", fmt::join(option.choices, " ")); }
+                specification += fmt::format(":{}:{}", escaped(option.text.value, ":[]\\"),
+                                             option.is_file ? "_files" : "");
+                if (!option.choices.empty()) {
+                    specification += fmt::format("({})", fmt::join(option.choices, " "));
+                }
             }
             cases += fmt::format(" \\\n            {}", quotedForZsh(specification));
         }
@@ -107,15 +113,19 @@ _binosplat "$@"
 
 std::string completionsOfFish() {
     std::string text =
-        "# Completion of binosplat for fish.\ncomplete -c binosplat -n __fish_use_subcommand -l help -d 'print the commands'\n"
+        "# Completion of binosplat for fish.\ncomplete -c binosplat -n __fish_use_subcommand -l help -d "
+        "'print the commands'\n"
         "complete -c binosplat -n __fish_use_subcommand -l version -d 'print the version'\n";
     for (const Command& command : shownCommands()) {
-        text += fmt::format("complete -c binosplat -n __fish_use_subcommand -a {} -d {}\n", command.name, quotedForFish(command.help));
-        const std::string seen = fmt::format("complete -c binosplat -n '__fish_seen_subcommand_from {}'", command.name);
+        text += fmt::format("complete -c binosplat -n __fish_use_subcommand -a {} -d {}\n", command.name,
+                            quotedForFish(command.help));
+        const std::string seen =
+            fmt::format("complete -c binosplat -n '__fish_seen_subcommand_from {}'", command.name);
         for (const OptionDescription& option : optionsOf(command)) {
             std::string value = option.text.isFlag() ? "" : option.is_file ? " -r -F" : " -x";
             if (!option.choices.empty()) { value += fmt::format(" -a '{}'", fmt::join(option.choices, " ")); }
-            text += fmt::format("{} -l {}{} -d {}\n", seen, option.text.key, value, quotedForFish(option.text.help));
+            text += fmt::format("{} -l {}{} -d {}\n", seen, option.text.key, value,
+                                quotedForFish(option.text.help));
         }
         text += fmt::format("{} -l help -d 'print the options'\n", seen);
     }

@@ -14,7 +14,8 @@ constexpr double kTurnRadPerSecond = 1.2, kFlyDistancesPerSecond = 0.6, kFaster 
 
 }  // namespace
 
-void CameraMover::beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px, double height_px) {
+void CameraMover::beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px,
+                            double height_px) {
     way_.reset();
     drag_ = drag;
     place_px_ = place_px;
@@ -29,7 +30,8 @@ void CameraMover::dragTo(const glm::dvec2& place_px) {
     place_px_ = place_px;
     // The content in front follows the mouse: from top to bottom it turns by half a turn.
     if (drag_ == Drag::kOrbit) {
-        camera_.orbit(under_, std::numbers::pi * step_px.x / height_px_, -std::numbers::pi * step_px.y / height_px_);
+        camera_.orbit(under_, std::numbers::pi * step_px.x / height_px_,
+                      -std::numbers::pi * step_px.y / height_px_);
     }
     if (drag_ == Drag::kPan) { camera_.pan(step_px, depth_, focal_px_); }
 }

@@ -20,13 +20,16 @@ public:
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     // Jumps, or goes there in a moment; any other motion ends that.
     void set(const OrbitCamera& camera) { camera_ = camera, way_.reset(), drag_ = Drag::kNone; }
-    void glideTo(const OrbitCamera& camera, double within_seconds = 0.35) { way_ = Way{camera_, camera, within_seconds, 0.0}; }
+    void glideTo(const OrbitCamera& camera, double within_seconds = 0.35) {
+        way_ = Way{camera_, camera, within_seconds, 0.0};
+    }
     [[nodiscard]] bool isGliding() const { return way_.has_value(); }
 
     // A drag begins at `place_px` of a picture, where `under` is seen; `focal_px` and `height_px` are the
     // picture's.
     enum class Drag { kNone, kOrbit, kPan };
-    void beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px, double height_px);
+    void beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px,
+                   double height_px);
     void dragTo(const glm::dvec2& place_px);
     void endDrag() { drag_ = Drag::kNone; }
     [[nodiscard]] bool isDragging() const { return drag_ != Drag::kNone; }

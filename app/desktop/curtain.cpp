@@ -19,7 +19,9 @@ OwnImage makeInk(const Context& context) {
     return {context, "the curtain's line", {1, 1}, vk::Format::eR8G8B8A8Unorm, kUsage};
 }
 
-int lineIn(const EyePart& part, double share) { return static_cast<int>(std::lround(part.at_px.x + share * part.size_px.x)); }
+int lineIn(const EyePart& part, double share) {
+    return static_cast<int>(std::lround(part.at_px.x + share * part.size_px.x));
+}
 
 }  // namespace
 
@@ -30,7 +32,9 @@ double Curtain::shareAt(const std::vector<EyePart>& parts, const glm::dvec2& pla
     return (place_px.x - part.at_px.x) / part.size_px.x;
 }
 
-bool Curtain::isLeftOf(const std::vector<EyePart>& parts, const glm::dvec2& place_px) const { return shareAt(parts, place_px) > share_; }
+bool Curtain::isLeftOf(const std::vector<EyePart>& parts, const glm::dvec2& place_px) const {
+    return shareAt(parts, place_px) > share_;
+}
 
 bool Curtain::isAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px) const {
     const std::optional<EyePart> part = partAt(parts, place_px);
@@ -46,14 +50,17 @@ void Curtain::compose(Commands& commands, vk::Image window, const std::vector<Ey
     for (std::size_t i = 0; i < inks_.size(); ++i) {
         const vk::Image ink = *inks_[i].image;
         changeLayout(commands, ink, Layout::eUndefined, Layout::eTransferDstOptimal);
-        commands.buffer().clearColorImage(ink, Layout::eTransferDstOptimal, vk::ClearColorValue(kInks[i]),
-                                          vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
+        commands.buffer().clearColorImage(
+            ink, Layout::eTransferDstOptimal, vk::ClearColorValue(kInks[i]),
+            vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
         changeLayout(commands, ink, Layout::eTransferDstOptimal, Layout::eTransferSrcOptimal);
         for (const EyePart& part : parts) {
             const glm::ivec2 low(part.at_px), high = low + glm::ivec2(part.size_px);
             const glm::ivec2 middle(lineIn(part, share_), (low.y + high.y) / 2);
-            for (const glm::ivec2& size_px : {glm::ivec2(kLinePx[i], static_cast<int>(part.size_px.y)), kHandlePx[i]}) {
-                const glm::ivec2 from = glm::max(middle - size_px / 2, low), to = glm::min(middle - size_px / 2 + size_px, high);
+            for (const glm::ivec2& size_px :
+                 {glm::ivec2(kLinePx[i], static_cast<int>(part.size_px.y)), kHandlePx[i]}) {
+                const glm::ivec2 from = glm::max(middle - size_px / 2, low),
+                                 to = glm::min(middle - size_px / 2 + size_px, high);
                 if (glm::any(glm::greaterThanEqual(from, to))) { continue; }
                 // One after the other: what comes later lies above.
                 changeLayout(commands, window, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);

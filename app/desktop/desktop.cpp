@@ -12,7 +12,8 @@ void runDesktop(const ViewOptions& options, const ViewSettings& settings) {
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
     if (windows == nullptr) {
         throw Error(ExitCode::kNoDevice,
-                    "no window: there is no display that Vulkan can show on (DISPLAY and WAYLAND_DISPLAY); use `binosplat render`");
+                    "no window: there is no display that Vulkan can show on (DISPLAY and WAYLAND_DISPLAY); "
+                    "use `binosplat render`");
     }
     ContextOptions context_options = contextOptions(options.run);
     context_options.instance_extensions = WindowSystem::instanceExtensions();

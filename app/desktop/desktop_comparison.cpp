@@ -16,15 +16,18 @@ void DesktopShell::takeOther() {
     comparison_->pictures.forget();
     comparison_->is_whole_asked = false;
     notes_.remember(scenes_.other()->name, {});
-    say(fmt::format("left of the line {}, right of it {}: drag it, or hold C", scenes_.get()->name, scenes_.other()->name));
+    say(fmt::format("left of the line {}, right of it {}: drag it, or hold C", scenes_.get()->name,
+                    scenes_.other()->name));
 }
 
 void DesktopShell::followComparison() {
-    if (const std::string title = scenes_.names(); scenes_.get() != nullptr && std::exchange(title_, title) != title) {
+    if (const std::string title = scenes_.names();
+        scenes_.get() != nullptr && std::exchange(title_, title) != title) {
         window_.setTitle(title + " - binosplat");
     }
     if (scenes_.other() == nullptr) { return; }
-    const bool is_whole = comparison_->is_whole_asked != (window_.isHeld(GLFW_KEY_C) && !panel_.entry().isOpen());
+    const bool is_whole =
+        comparison_->is_whole_asked != (window_.isHeld(GLFW_KEY_C) && !panel_.entry().isOpen());
     if (std::exchange(comparison_->is_whole, is_whole) == is_whole) { return; }
     is_shown_ = false;
     log_.say(is_whole ? "shows " + scenes_.other()->name : "the curtain is back");
@@ -58,7 +61,8 @@ bool DesktopShell::moveCurtain(const DesktopEvent& event) {
 }
 
 bool DesktopShell::isOtherAt(const glm::dvec2& place_px) const {
-    return scenes_.other() != nullptr && (comparison_->is_whole || comparison_->curtain.isLeftOf(parts(), place_px));
+    return scenes_.other() != nullptr &&
+           (comparison_->is_whole || comparison_->curtain.isLeftOf(parts(), place_px));
 }
 
 void DesktopShell::renderOther(const std::vector<Eye>& eyes, const FrameSettings& settings, bool at_rest) {
@@ -76,8 +80,10 @@ void DesktopShell::composeScenes(Commands& commands, vk::Image window) {
     const bool compares = scenes_.other() != nullptr;
     if (!compares || !comparison_->is_whole) { pictures_.compose(commands, window, parts()); }
     if (!compares) { return; }
-    changeLayout(commands, window, vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::eTransferDstOptimal);
-    comparison_->pictures.compose(commands, window, parts(), comparison_->is_whole ? 0.0 : comparison_->curtain.share());
+    changeLayout(commands, window, vk::ImageLayout::eTransferDstOptimal,
+                 vk::ImageLayout::eTransferDstOptimal);
+    comparison_->pictures.compose(commands, window, parts(),
+                                  comparison_->is_whole ? 0.0 : comparison_->curtain.share());
     if (!comparison_->is_whole) { comparison_->curtain.compose(commands, window, parts()); }
 }
 

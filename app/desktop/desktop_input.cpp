@@ -26,13 +26,15 @@ bool isIn(const WindowPart& part, const glm::dvec2& place_px) {
 void DesktopShell::handle(const DesktopEvent& event) {
     using Kind = DesktopEvent::Kind;
     const WindowPart part = panelPart();
-    const bool on_panel = event.kind != Kind::kLeave && !mover_.isDragging() && (pointer_.pressed || isIn(part, event.place_px));
+    const bool on_panel = event.kind != Kind::kLeave && !mover_.isDragging() &&
+                          (pointer_.pressed || isIn(part, event.place_px));
     const bool is_left = event.code == GLFW_MOUSE_BUTTON_LEFT;
     layouts_due_ = 2;
     if (takesText(event)) { return; }
     // The panel sees each event by itself: a click may begin and end between two pictures.
     if (on_panel && event.kind != Kind::kKey && event.kind != Kind::kDrop) {
-        pointer_.place_px = (event.place_px - glm::dvec2(part.at_px)) * glm::dvec2(kPanelPx) / glm::dvec2(part.size_px);
+        pointer_.place_px =
+            (event.place_px - glm::dvec2(part.at_px)) * glm::dvec2(kPanelPx) / glm::dvec2(part.size_px);
         if (event.kind == Kind::kPress && is_left) { pointer_.pressed = true; }
         if (event.kind == Kind::kRelease && is_left) { pointer_.pressed = false; }
         pointer_.wheel = event.kind == Kind::kWheel ? event.steps : 0.0;
@@ -83,8 +85,9 @@ void DesktopShell::press(const DesktopEvent& event) {
     }
     if (is_left) {
         const auto now = Clock::now();
-        const bool is_double = std::chrono::duration<double>(now - pressed_at_).count() < kDoubleClickSeconds &&
-                               glm::distance(event.place_px, pressed_px_) < kDoubleClickPx;
+        const bool is_double =
+            std::chrono::duration<double>(now - pressed_at_).count() < kDoubleClickSeconds &&
+            glm::distance(event.place_px, pressed_px_) < kDoubleClickPx;
         pressed_at_ = is_double ? Clock::time_point() : now;
         pressed_px_ = event.place_px;
         if (is_double) {
@@ -101,11 +104,12 @@ void DesktopShell::press(const DesktopEvent& event) {
     const OrbitCamera& camera = mover_.camera();
     glm::dvec3 pivot = under(event.place_px);
     if (is_left) {
-        const double farthest = kFarthestPivot * camera.distance(), far = glm::distance(camera.position(), pivot);
+        const double farthest = kFarthestPivot * camera.distance(),
+                     far = glm::distance(camera.position(), pivot);
         pivot = glm::mix(camera.position(), pivot, std::min(farthest / far, 1.0));
     }
-    mover_.beginDrag(is_left ? CameraMover::Drag::kOrbit : CameraMover::Drag::kPan, event.place_px, pivot, eyes.front().intrinsics.fx,
-                     part_px.y);
+    mover_.beginDrag(is_left ? CameraMover::Drag::kOrbit : CameraMover::Drag::kPan, event.place_px, pivot,
+                     eyes.front().intrinsics.fx, part_px.y);
 }
 
 std::optional<glm::dvec3> DesktopShell::seenAt(const glm::dvec2& place_px) {
@@ -114,9 +118,10 @@ std::optional<glm::dvec3> DesktopShell::seenAt(const glm::dvec2& place_px) {
     if (!part) { return std::nullopt; }
     const int e = pictures_.eyes().size() == 1 ? 0 : part->eye;
     const Eye& eye = pictures_.eyes()[static_cast<std::size_t>(e)];
-    const glm::dvec2 pixel = (place_px - glm::dvec2(part->at_px)) * glm::dvec2(eye.size_px) / glm::dvec2(part->size_px);
-    const std::optional<double> depth =
-        (isOtherAt(place_px) ? scenes_.otherFrame() : scenes_.frame()).depthAt(e, glm::min(glm::uvec2(pixel), eye.size_px - 1u));
+    const glm::dvec2 pixel =
+        (place_px - glm::dvec2(part->at_px)) * glm::dvec2(eye.size_px) / glm::dvec2(part->size_px);
+    const std::optional<double> depth = (isOtherAt(place_px) ? scenes_.otherFrame() : scenes_.frame())
+                                            .depthAt(e, glm::min(glm::uvec2(pixel), eye.size_px - 1u));
     return depth ? std::optional(pointAt(eye, pixel, *depth)) : std::nullopt;
 }
 
@@ -126,12 +131,15 @@ glm::dvec3 DesktopShell::under(const glm::dvec2& place_px) {
     const std::optional<EyePart> part = partAt(parts(), place_px);
     if (!part) { return camera.centre(); }
     const std::vector<Eye> eyes = eyesOf(camera, windowSight(), part->size_px);
-    return pointAt(eyes[eyes.size() == 1 ? 0 : static_cast<std::size_t>(part->eye)], place_px - glm::dvec2(part->at_px), camera.distance());
+    return pointAt(eyes[eyes.size() == 1 ? 0 : static_cast<std::size_t>(part->eye)],
+                   place_px - glm::dvec2(part->at_px), camera.distance());
 }
 
 void DesktopShell::pressKey(int key) {
     viewpoints_.endTour();
-    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) { return goTo(viewpoints_.go(static_cast<std::size_t>(key - GLFW_KEY_1))); }
+    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
+        return goTo(viewpoints_.go(static_cast<std::size_t>(key - GLFW_KEY_1)));
+    }
     PanelRequests requests;
     requests.settings = state_.settings();
     switch (key) {
@@ -185,7 +193,9 @@ void DesktopShell::goTo(const Viewpoint* viewpoint, double within_seconds) {
 bool DesktopShell::takesText(const DesktopEvent& event) {
     TextEntry& entry = panel_.entry();
     if (event.kind == DesktopEvent::Kind::kText && entry.isOpen()) { entry.type(event.path); }
-    if (event.kind != DesktopEvent::Kind::kKey || !entry.isOpen()) { return event.kind == DesktopEvent::Kind::kText; }
+    if (event.kind != DesktopEvent::Kind::kKey || !entry.isOpen()) {
+        return event.kind == DesktopEvent::Kind::kText;
+    }
     if (event.code == GLFW_KEY_BACKSPACE) { entry.eraseLast(); }
     if (event.code == GLFW_KEY_ESCAPE) { entry.close(); }
     if (event.code == GLFW_KEY_ENTER || event.code == GLFW_KEY_KP_ENTER) { entry.confirm(); }
@@ -194,7 +204,9 @@ bool DesktopShell::takesText(const DesktopEvent& event) {
 
 void DesktopShell::showWhole() {
     const SceneFacts& facts = scenes_.get()->facts;
-    if (facts.size_units > 0.0) { mover_.glideTo(mover_.camera().framing(facts.middle, 0.5 * facts.size_units, angle_rad_)); }
+    if (facts.size_units > 0.0) {
+        mover_.glideTo(mover_.camera().framing(facts.middle, 0.5 * facts.size_units, angle_rad_));
+    }
 }
 
 void DesktopShell::showStart() { mover_.glideTo(OrbitCamera(scenes_.get()->start_view)); }

@@ -30,8 +30,8 @@ void DesktopShell::layOutPanel(const PanelPointer& pointer, double seconds) {
         status.viewpoint = viewpoints_.current() != nullptr ? viewpoints_.current()->name : "";
         status.tours = viewpoints_.isTouring();
         if (scene->moving != nullptr) {
-            status.time = {scene->clock.frame(), scene->clock.frameCount(), scene->moving->rateHz(), scene->clock.plays(),
-                           scene->moving->counters().scene_frames_late};
+            status.time = {scene->clock.frame(), scene->clock.frameCount(), scene->moving->rateHz(),
+                           scene->clock.plays(), scene->moving->counters().scene_frames_late};
         }
     }
     panel_.showTimes(pictures_.lastFrame(), "", seconds);
@@ -59,7 +59,10 @@ void DesktopShell::follow(const PanelRequests& requests) {
         if (requests.reset_scene) { showStart(); }
         changeViewpoints(requests);
         measure(requests);
-        if (const std::string said = scene->moveTime(requests.play, requests.frame_step, requests.frame); !said.empty()) { log_.say(said); }
+        if (const std::string said = scene->moveTime(requests.play, requests.frame_step, requests.frame);
+            !said.empty()) {
+            log_.say(said);
+        }
     }
     openAndSave(requests);
     if (requests.quit) { leaving_ = true; }
@@ -89,7 +92,8 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
     if (requests.save && scenes_.get() != nullptr) {
         // Level, for a wearer who stands there later.
         const OrbitCamera& camera = mover_.camera();
-        Similarity level = startPlacement({camera.position(), camera.centre(), camera.up(), 0.0}, options_.run.metres_per_unit);
+        Similarity level = startPlacement({camera.position(), camera.centre(), camera.up(), 0.0},
+                                          options_.run.metres_per_unit);
         level.scale = state_.sceneFromRoom().scale;
         state_.place(level);
         notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
@@ -142,7 +146,8 @@ void DesktopShell::openFile() {
 }
 
 void DesktopShell::openDropped(const DesktopEvent& event) {
-    event.path.ends_with(".viewpoints.json") ? viewpoints_.read(event.path) : scenes_.begin(event.path, event.second);
+    event.path.ends_with(".viewpoints.json") ? viewpoints_.read(event.path)
+                                             : scenes_.begin(event.path, event.second);
 }
 
 void DesktopShell::takePicture() {
@@ -154,7 +159,8 @@ void DesktopShell::takePicture() {
     settings.keep_classes = false;
     // Of the other one, if it fills the window.
     scenes_.draw(comparison_ && comparison_->is_whole);
-    writer_.begin(scenes_.shotOf(scenes_.seenFromDrawn(eyesOf(mover_.camera(), sight, areaPx())), settings), scenes_.drawn()->name);
+    writer_.begin(scenes_.shotOf(scenes_.seenFromDrawn(eyesOf(mover_.camera(), sight, areaPx())), settings),
+                  scenes_.drawn()->name);
     scenes_.draw(false);
 }
 

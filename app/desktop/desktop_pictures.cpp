@@ -29,7 +29,10 @@ void MotionScale::measure(double scale, double gpu_ms) {
     if (std::abs(steps - now) > 0.75) { scale_ = std::max(std::exp2(-0.5 * std::round(steps)), kCoarsest); }
 }
 
-DesktopPictures::DesktopPictures(const Context& context) : context_(context), presenter_(context, kPresented) { presenter_.makeKernels(); }
+DesktopPictures::DesktopPictures(const Context& context)
+    : context_(context), presenter_(context, kPresented) {
+    presenter_.makeKernels();
+}
 
 void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
     const bool fits = size_px.x <= room_px_.x && size_px.y <= room_px_.y;
@@ -49,8 +52,8 @@ void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
     }
 }
 
-void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, const Look& look,
-                             bool waits) {
+void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
+                             const Look& look, bool waits) {
     const glm::uvec2 size_px = eyes.front().size_px;
     reserve(size_px, eyes.size());
     frame.reserve(eyes, settings);
@@ -67,7 +70,8 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
                                .depth = {},
                                .kept_bits = look.anaglyph && e == kRight ? kRed : 0},
                               settings.near);
-            changeLayout(commands, image, vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);
+            changeLayout(commands, image, vk::ImageLayout::eColorAttachmentOptimal,
+                         vk::ImageLayout::eTransferSrcOptimal);
         }
     };
     std::optional<FrameResult> known;
@@ -81,13 +85,15 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
     eyes_ = eyes;
 }
 
-void DesktopPictures::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts, double from_share) {
+void DesktopPictures::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts,
+                              double from_share) {
     if (eyes_.empty()) { return; }
     const glm::uvec2 size_px = eyes_.front().size_px;
     const auto from_x = static_cast<std::uint32_t>(std::lround(from_share * size_px.x));
     for (const EyePart& part : parts) {
         const std::size_t image = eyes_.size() == 1 ? 0 : static_cast<std::size_t>(part.eye);
-        blitInto(commands, *images_[image]->image, size_px, window, {glm::ivec2(part.at_px), glm::ivec2(part.size_px)}, from_x);
+        blitInto(commands, *images_[image]->image, size_px, window,
+                 {glm::ivec2(part.at_px), glm::ivec2(part.size_px)}, from_x);
     }
 }
 

@@ -37,10 +37,12 @@ public:
 
     // Renders these eyes, all of the same size. With `waits` the picture is complete when this returns;
     // otherwise it does not wait, and the picture may lack splats. Throws Error if memory is short.
-    void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, const Look& look, bool waits);
+    void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
+                const Look& look, bool waits);
     // Records the parts' pictures, scaled, into a window that has been cleared; of each only what lies right
     // of this share of its width.
-    void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts, double from_share = 0.0);
+    void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts,
+                 double from_share = 0.0);
 
     // The last frame that the device has finished.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }

@@ -55,7 +55,9 @@ DesktopShell::DesktopShell(const ViewOptions& options, const ViewSettings& setti
       viewpoints_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_, framesAhead(settings, window_.sizePx())) {
     panel_.status().window.emplace();
-    if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
+    if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) {
+        log_.print(complaint);
+    }
 }
 
 void DesktopShell::run() {
@@ -71,7 +73,9 @@ void DesktopShell::step() {
     window_.wait(secondsToWait());
     const double seconds = std::min(secondsSince(last_step_), 0.1);
     last_step_ = Clock::now();
-    if (isInterrupted() || window_.isClosed() || (options_.frames != 0 && log_.frame >= options_.frames)) { leaving_ = true; }
+    if (isInterrupted() || window_.isClosed() || (options_.frames != 0 && log_.frame >= options_.frames)) {
+        leaving_ = true;
+    }
     files_.deliver();
     dialogs_.deliver();
     if (const std::optional<std::string> outcome = writer_.takeOutcome()) { say(*outcome); }
@@ -95,7 +99,8 @@ double DesktopShell::secondsToWait() const {
     if (!is_shown_) { return kNoPictureSeconds; }
     if (layouts_due_ > 0 || mover_.isGliding() || heldMotion().isAny()) { return 0.0; }
     const auto changes = [](const LoadedScene* scene) {
-        return scene != nullptr && scene->live && (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()));
+        return scene != nullptr && scene->live &&
+               (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()));
     };
     if (changes(scenes_.get()) || changes(scenes_.other())) { return kNoPictureSeconds; }
     double most = kIdleSeconds;
@@ -123,7 +128,8 @@ void DesktopShell::takeScene() {
     OrbitCamera camera(scene->start_view);
     if (const Similarity& placed = state_.sceneFromRoom(); !(placed == scene->start)) {  // where it was saved
         const glm::dvec3 ahead = placed.orientation * glm::dvec3(0.0, 0.0, camera.distance());
-        camera = OrbitCamera(View{placed.position, placed.position + ahead, placed.orientation * glm::dvec3(0.0, -1.0, 0.0), 0.0});
+        camera = OrbitCamera(View{placed.position, placed.position + ahead,
+                                  placed.orientation * glm::dvec3(0.0, -1.0, 0.0), 0.0});
     }
     if (const auto left = left_.find(scene->place); left != left_.end()) { camera = left->second; }
     mover_.set(camera);
@@ -142,7 +148,8 @@ void DesktopShell::keepPictureOfScene() {
 WindowPart DesktopShell::panelPart() const {
     if (!state_.settings().panel) { return {}; }
     const glm::dvec2 size(window_.sizePx()), panel(kPanelPx);
-    const double scale = std::min({window_.scale() * kPanelScale, size.y / panel.y, kPanelShare * size.x / panel.x});
+    const double scale =
+        std::min({window_.scale() * kPanelScale, size.y / panel.y, kPanelShare * size.x / panel.x});
     const glm::ivec2 size_px = glm::max(glm::ivec2(scale * panel), glm::ivec2(1));
     return {{static_cast<int>(size.x) - size_px.x, 0}, size_px};
 }
@@ -158,7 +165,8 @@ WindowSight DesktopShell::windowSight() const {
 }
 
 DesktopShell::Sight DesktopShell::sightNow() const {
-    Sight sight{scenes_.get(), scenes_.other(), mover_.camera(), parts().front().size_px, state_.settings(), moment_};
+    Sight sight{scenes_.get(),           scenes_.other(),   mover_.camera(),
+                parts().front().size_px, state_.settings(), moment_};
     sight.settings.page = {};  // these change nothing in the scene
     sight.settings.panel = {};
     return sight;
@@ -169,7 +177,8 @@ FrameSettings DesktopShell::frameSettingsNow(bool at_rest) const {
     FrameSettings frame = frameSettings(options_.run.camera, framesAhead(settings, {}).stereo, kWearersOrder);
     if (at_rest && frame.mode != Mode::kMono && !settings.tint) { frame.mode = Mode::kShared; }
     const LoadedScene& scene = *scenes_.get();
-    const double size = scene.facts.size_units, usual = size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
+    const double size = scene.facts.size_units,
+                 usual = size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
     frame.near = options_.run.camera.near.value_or(std::min(usual, kNearShare * mover_.camera().distance()));
     frame.half_floats = true;
     frame.keep_both_depths = true;
@@ -215,7 +224,8 @@ void DesktopShell::drawScene(double seconds) {
 
 void DesktopShell::render(double scale, bool at_rest) {
     scale *= state_.settings().resolution_scale;
-    const glm::uvec2 size_px = glm::max(glm::uvec2(glm::round(scale * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
+    const glm::uvec2 size_px =
+        glm::max(glm::uvec2(glm::round(scale * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
     FrameSettings settings = frameSettingsNow(at_rest);
     settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale));
     const std::vector<Eye> eyes = eyesOf(mover_.camera(), windowSight(), size_px);

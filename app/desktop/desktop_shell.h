@@ -65,7 +65,9 @@ private:
     // Pictures.
     [[nodiscard]] WindowPart panelPart() const;
     [[nodiscard]] glm::uvec2 areaPx() const;  // beside the panel
-    [[nodiscard]] std::vector<EyePart> parts() const { return partsOf(state_.settings().window_stereo, areaPx()); }
+    [[nodiscard]] std::vector<EyePart> parts() const {
+        return partsOf(state_.settings().window_stereo, areaPx());
+    }
     [[nodiscard]] DesktopPictures::Look look() const {
         return {state_.settings().tint, state_.settings().window_stereo == WindowStereo::kAnaglyph};
     }
@@ -88,7 +90,9 @@ private:
     void goTo(const Viewpoint* viewpoint, double within_seconds = 0.35);  // null: stays
     // What is written goes to the panel while it asks for something.
     bool takesText(const DesktopEvent& event);
-    [[nodiscard]] HeldMotion heldMotion() const { return panel_.entry().isOpen() ? HeldMotion() : window_.heldMotion(); }
+    [[nodiscard]] HeldMotion heldMotion() const {
+        return panel_.entry().isOpen() ? HeldMotion() : window_.heldMotion();
+    }
     void showWhole();
     void showStart();
 

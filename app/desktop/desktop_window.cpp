@@ -18,7 +18,9 @@ namespace {
 constexpr int kWindowWidthPx = 1280, kWindowHeightPx = 720;
 constexpr double kStickRests = 0.15;
 
-DesktopWindow& self(GLFWwindow* window) { return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window)); }
+DesktopWindow& self(GLFWwindow* window) {
+    return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window));
+}
 
 std::string utf8Of(unsigned letter) {
     const auto byte = [](unsigned value) { return static_cast<char>(value); };
@@ -46,7 +48,8 @@ DesktopWindow::DesktopWindow(const Context& context)
         if (!condition) { throw Error(ExitCode::kNoDevice, trouble); }
     };
     require(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME),
-            fmt::format("{} cannot show pictures in a window, must be a device with VK_KHR_swapchain", context.deviceName()));
+            fmt::format("{} cannot show pictures in a window, must be a device with VK_KHR_swapchain",
+                        context.deviceName()));
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     window_.reset(glfwCreateWindow(kWindowWidthPx, kWindowHeightPx, "binosplat", nullptr, nullptr));
@@ -70,11 +73,14 @@ void DesktopWindow::makePictures() {
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context_.instance(), window_.get(), nullptr, &surface);
     if (result != VK_SUCCESS) {
-        throw Error(ExitCode::kNoDevice, fmt::format("cannot draw in the window: {}", vk::to_string(vk::Result(result))));
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("cannot draw in the window: {}", vk::to_string(vk::Result(result))));
     }
     vk::raii::SurfaceKHR owned(context_.instance(), surface);
     if (context_.physicalDevice().getSurfaceSupportKHR(context_.queueFamily(), *owned) != VK_TRUE) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{} cannot show on this display, must be a device that can", context_.deviceName()));
+        throw Error(
+            ExitCode::kNoDevice,
+            fmt::format("{} cannot show on this display, must be a device that can", context_.deviceName()));
     }
     constexpr bool kPaced = true;
     pictures_ = std::make_unique<WindowPictures>(
@@ -93,9 +99,12 @@ void DesktopWindow::listen() {
         const bool repeats = action == GLFW_REPEAT && key == GLFW_KEY_BACKSPACE;
         if (action == GLFW_PRESS || repeats) { self(w).add({.kind = Kind::kKey, .code = key, .path = {}}); }
     });
-    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) { self(w).add({.kind = Kind::kText, .path = utf8Of(letter)}); });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
+        self(w).add({.kind = Kind::kText, .path = utf8Of(letter)});
+    });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
-        self(w).add({.kind = action == GLFW_PRESS ? Kind::kPress : Kind::kRelease, .code = button, .path = {}});
+        self(w).add(
+            {.kind = action == GLFW_PRESS ? Kind::kPress : Kind::kRelease, .code = button, .path = {}});
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
         self(w).cursor_ = {x, y};
@@ -105,8 +114,9 @@ void DesktopWindow::listen() {
         glfwGetCursorPos(w, &self(w).cursor_.x, &self(w).cursor_.y);
         self(w).add({.kind = entered == GLFW_TRUE ? Kind::kMove : Kind::kLeave, .path = {}});
     });
-    glfwSetScrollCallback(window,
-                          [](GLFWwindow* w, double, double steps) { self(w).add({.kind = Kind::kWheel, .steps = steps, .path = {}}); });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double steps) {
+        self(w).add({.kind = Kind::kWheel, .steps = steps, .path = {}});
+    });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         if (count == 2) { self(w).add({.kind = Kind::kDrop, .path = paths[0], .second = paths[1]}); }
         if (count == 1 || count > 2) { self(w).add({.kind = Kind::kDrop, .path = paths[count - 1]}); }
@@ -129,15 +139,18 @@ bool DesktopWindow::hasGamepad() const {
 
 HeldMotion DesktopWindow::heldMotion() const {
     const auto held = [&](int key) { return glfwGetKey(window_.get(), key) == GLFW_PRESS ? 1.0 : 0.0; };
-    HeldMotion motion{{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_Q) - held(GLFW_KEY_E), held(GLFW_KEY_W) - held(GLFW_KEY_S)},
+    HeldMotion motion{{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_Q) - held(GLFW_KEY_E),
+                       held(GLFW_KEY_W) - held(GLFW_KEY_S)},
                       {held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT), held(GLFW_KEY_UP) - held(GLFW_KEY_DOWN)},
                       held(GLFW_KEY_LEFT_SHIFT) + held(GLFW_KEY_RIGHT_SHIFT) > 0.0};
     if (GLFWgamepadstate pad{}; gamepadState(pad)) {
         const float* const axes = pad.axes;  // triggers rest at -1
-        motion.fly += glm::dvec3(stick(axes[GLFW_GAMEPAD_AXIS_LEFT_X]),
-                                 stick(0.5f * (axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] - axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER])),
-                                 -stick(axes[GLFW_GAMEPAD_AXIS_LEFT_Y]));
-        motion.turn += glm::dvec2(stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_X]), -stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]));
+        motion.fly += glm::dvec3(
+            stick(axes[GLFW_GAMEPAD_AXIS_LEFT_X]),
+            stick(0.5f * (axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] - axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER])),
+            -stick(axes[GLFW_GAMEPAD_AXIS_LEFT_Y]));
+        motion.turn +=
+            glm::dvec2(stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_X]), -stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]));
         motion.fast = motion.fast || pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS;
     }
     return motion;
@@ -154,7 +167,8 @@ bool DesktopWindow::isClosed() const { return glfwWindowShouldClose(window_.get(
 
 bool DesktopWindow::isMinimized() const {
     const glm::uvec2 size_px = sizePx();
-    return size_px.x == 0 || size_px.y == 0 || glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) == GLFW_TRUE;
+    return size_px.x == 0 || size_px.y == 0 ||
+           glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) == GLFW_TRUE;
 }
 
 bool DesktopWindow::takeDamage() { return std::exchange(is_damaged_, false); }
@@ -202,7 +216,9 @@ bool DesktopWindow::show(const std::function<void(vk::Image window, vk::Semaphor
             pictures_->show();
             return true;
         } catch (const vk::SurfaceLostKHRError& error) {
-            if (attempt > 0) { throw Error(ExitCode::kNoDevice, fmt::format("the display is gone: {}", error.what())); }
+            if (attempt > 0) {
+                throw Error(ExitCode::kNoDevice, fmt::format("the display is gone: {}", error.what()));
+            }
             {
                 const std::lock_guard lock(context_.queueMutex());
                 context_.queue().waitIdle();

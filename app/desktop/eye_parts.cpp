@@ -49,7 +49,8 @@ std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm
 
 glm::dvec3 pointAt(const Eye& eye, const glm::dvec2& place_px, double depth) {
     const Intrinsics& lens = eye.intrinsics;
-    return transform(eye.world_from_camera, depth * glm::dvec3((place_px.x - lens.cx) / lens.fx, (place_px.y - lens.cy) / lens.fy, 1.0));
+    return transform(eye.world_from_camera, depth * glm::dvec3((place_px.x - lens.cx) / lens.fx,
+                                                               (place_px.y - lens.cy) / lens.fy, 1.0));
 }
 
 }  // namespace binosplat

@@ -36,7 +36,9 @@ ChosenFile askForFile() {
             return chosen;
         } catch (const Error&) {}  // try the next one
     }
-    return {"", "no dialog to choose a file with: install zenity or kdialog, drop the file on the window, or use the page Scenes"};
+    return {"",
+            "no dialog to choose a file with: install zenity or kdialog, drop the file on the window, or use "
+            "the page Scenes"};
 }
 
 }  // namespace binosplat

@@ -14,10 +14,12 @@ const glm::dvec3 kAhead(0.0, 0.0, 1.0);
 
 }  // namespace
 
-OrbitCamera::OrbitCamera(const View& view) : position_(view.eye), distance_(glm::distance(view.eye, view.look)) {
+OrbitCamera::OrbitCamera(const View& view)
+    : position_(view.eye), distance_(glm::distance(view.eye, view.look)) {
     const Pose looking = lookAt(view.eye, view.look, view.up);
     const glm::dvec3 up = glm::normalize(view.up), forward = looking.orientation * kAhead;
-    pitch_rad_ = std::clamp(std::asin(std::clamp(glm::dot(forward, up), -1.0, 1.0)), -kSteepestRad, kSteepestRad);
+    pitch_rad_ =
+        std::clamp(std::asin(std::clamp(glm::dot(forward, up), -1.0, 1.0)), -kSteepestRad, kSteepestRad);
     // Upright: the camera's right is level.
     const glm::dvec3 right = looking.orientation * glm::dvec3(1.0, 0.0, 0.0);
     scene_from_level_ = lookAt(glm::dvec3(0.0), glm::cross(up, right), up).orientation;
@@ -41,7 +43,9 @@ void OrbitCamera::orbit(const glm::dvec3& pivot, double right_rad, double up_rad
     position_ = pivot - orientation() * pivot_camera;
 }
 
-void OrbitCamera::pan(const glm::dvec2& pixels, double depth, double focal_px) { fly(glm::dvec3(-depth / focal_px * pixels, 0.0)); }
+void OrbitCamera::pan(const glm::dvec2& pixels, double depth, double focal_px) {
+    fly(glm::dvec3(-depth / focal_px * pixels, 0.0));
+}
 
 void OrbitCamera::approach(const glm::dvec3& point, double share) {
     position_ = point + share * (position_ - point);

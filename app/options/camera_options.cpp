@@ -30,7 +30,8 @@ Cameras placeCameras(const RunOptions& options, const CameraFiles& files, const 
         view.fov_x_deg = 0.0;
         const glm::uvec2 size_px = camera.size_px.value_or(files.headset->size_px);
         return {headsetMiddle(*files.headset, world_from_middle, size_px),
-                headsetEyes(*files.headset, world_from_middle, eye_distance, size_px), eye_distance, view, files.headset->lens_centres};
+                headsetEyes(*files.headset, world_from_middle, eye_distance, size_px), eye_distance, view,
+                files.headset->lens_centres};
     }
     const glm::uvec2 size_px = camera.size_px.value_or(kDefaultSize);
     const Eye middle{world_from_middle, intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
@@ -40,7 +41,8 @@ Cameras placeCameras(const RunOptions& options, const CameraFiles& files, const 
 }  // namespace
 
 void requireView(const CameraOptions& options, const std::vector<FileCamera>& cameras) {
-    check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file, options.view, cameras.size() - 1);
+    check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file,
+          options.view, cameras.size() - 1);
 }
 
 CameraFiles readCameraFiles(const CameraOptions& options) {
@@ -70,16 +72,20 @@ std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoO
         // As seen through both lenses: midway between the directions in which they are sharpest.
         glm::dvec3 middle(0.0);
         for (std::size_t side = 0; side < 2; ++side) {
-            middle += cameras.eyes[side].world_from_camera.orientation * glm::normalize(cameras.lens_centres[side]);
+            middle +=
+                cameras.eyes[side].world_from_camera.orientation * glm::normalize(cameras.lens_centres[side]);
         }
-        gazes[0] = Gaze{stereo.gaze.value_or(glm::conjugate(cameras.middle.world_from_camera.orientation) * middle), clear_rad};
+        gazes[0] =
+            Gaze{stereo.gaze.value_or(glm::conjugate(cameras.middle.world_from_camera.orientation) * middle),
+                 clear_rad};
         return gazes;
     }
     for (std::size_t side = 0; side < 2; ++side) {
         // The target is assumed to be far away: both eyes turn alike.
-        const glm::dquat eye_from_middle =
-            glm::conjugate(cameras.eyes[side].world_from_camera.orientation) * cameras.middle.world_from_camera.orientation;
-        const glm::dvec3 direction = stereo.gaze ? eye_from_middle * *stereo.gaze : cameras.lens_centres[side];
+        const glm::dquat eye_from_middle = glm::conjugate(cameras.eyes[side].world_from_camera.orientation) *
+                                           cameras.middle.world_from_camera.orientation;
+        const glm::dvec3 direction =
+            stereo.gaze ? eye_from_middle * *stereo.gaze : cameras.lens_centres[side];
         gazes[side] = Gaze{direction, clear_rad};
     }
     return gazes;
@@ -89,7 +95,8 @@ Cameras moveCameras(const Cameras& start, const Pose& world_from_middle) {
     Cameras moved = start;
     moved.middle.world_from_camera = world_from_middle;
     for (std::size_t side = 0; side < 2; ++side) {
-        const Pose middle_from_eye = compose(inverse(start.middle.world_from_camera), start.eyes[side].world_from_camera);
+        const Pose middle_from_eye =
+            compose(inverse(start.middle.world_from_camera), start.eyes[side].world_from_camera);
         moved.eyes[side].world_from_camera = compose(world_from_middle, middle_from_eye);
     }
     return moved;

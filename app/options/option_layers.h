@@ -13,7 +13,8 @@ namespace binosplat {
 // The settings of a config file, known keys only, each in its own table or at the top. Tables named in
 // `foreign` are skipped. Throws Error with file and line for an unknown table or key. Paths in the file are
 // relative to the file.
-Settings configLayer(const std::filesystem::path& config, const std::vector<SettingsTable>& tables, const std::set<std::string>& foreign);
+Settings configLayer(const std::filesystem::path& config, const std::vector<SettingsTable>& tables,
+                     const std::set<std::string>& foreign);
 
 // Settings of the command line win; those of the config that contradict one (say, a camera file and an eye)
 // are dropped. Two settings of one layer that contradict each other are an Error: kUsage on the command line,

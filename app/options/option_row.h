@@ -129,7 +129,8 @@ auto make(std::string range, auto parse) {
 
 template <auto... Members>
 auto number(double least, double most) {
-    auto made = make<Members...>(fmt::format("{} to {}", least, most), [=](const Setting& s) { return readNumber(s, least, most); });
+    auto made = make<Members...>(fmt::format("{} to {}", least, most),
+                                 [=](const Setting& s) { return readNumber(s, least, most); });
     made.least = least;
     made.most = most;
     return made;
@@ -147,8 +148,9 @@ auto share() {
 template <auto... Members>
 auto count(std::uint64_t least, std::uint64_t most) {
     const bool unlimited = most >= std::numeric_limits<std::uint32_t>::max();
-    auto made = make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most),
-                                 [=](const Setting& s) { return readCount(s, least, most); });
+    auto made =
+        make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most),
+                         [=](const Setting& s) { return readCount(s, least, most); });
     made.least = static_cast<double>(least);
     made.most = static_cast<double>(most);
     return made;
@@ -176,8 +178,9 @@ auto file(std::string (*parse)(const Setting&) = readText) {
 template <auto... Members>
 auto named(std::vector<std::string_view> names) {
     using At = Path<Members...>;
-    auto made = make<Members...>(fmt::format("{}", fmt::join(names, ", ")),
-                                 [names](const Setting& s) { return std::ranges::find(names, readChoice(s, names)) - names.begin(); });
+    auto made = make<Members...>(fmt::format("{}", fmt::join(names, ", ")), [names](const Setting& s) {
+        return std::ranges::find(names, readChoice(s, names)) - names.begin();
+    });
     made.value = [names](const typename At::Owner& owner) {
         const std::optional value = At::in(owner);
         return value ? OptionValue(std::string(names[static_cast<std::size_t>(*value)])) : OptionValue();

@@ -29,20 +29,23 @@ constexpr double kMaxSeconds = 1e6, kMaxRateHz = 10'000.0;
 
 // A share, a number of splats, or a size such as 50MB.
 Keep readKeep(const Setting& setting) {
-    constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{{{"KB", 1e3}, {"MB", 1e6}, {"GB", 1e9}}};
+    constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{
+        {{"KB", 1e3}, {"MB", 1e6}, {"GB", 1e9}}};
     const std::string text = setting.text();
     for (const auto& [unit, bytes] : kUnits) {
         if (!text.ends_with(unit)) { continue; }
-        const std::optional<double> number = parseNumber(std::string_view(text).substr(0, text.size() - unit.size()));
+        const std::optional<double> number =
+            parseNumber(std::string_view(text).substr(0, text.size() - unit.size()));
         if (number && *number > 0.0) { return {*number * bytes, Keep::kBytes}; }
     }
     const std::optional<double> number = parseNumber(text);
     if (number && *number > 0.0 && *number <= 1.0) { return {*number, Keep::kShare}; }
-    if (number && *number > 1.0 && *number <= static_cast<double>(kMaxSplats) && *number == std::floor(*number)) {
+    if (number && *number > 1.0 && *number <= static_cast<double>(kMaxSplats) &&
+        *number == std::floor(*number)) {
         return {*number, Keep::kSplats};
     }
-    fail("{} is {}, must be a share of the splats up to 1, a number of them, or a size such as 50MB", setting.origin,
-         text.empty() ? "empty" : text);
+    fail("{} is {}, must be a share of the splats up to 1, a number of them, or a size such as 50MB",
+         setting.origin, text.empty() ? "empty" : text);
 }
 
 constexpr unsigned kPictures = kRender | kBench;          // commands that make pictures without a headset
@@ -84,107 +87,137 @@ std::span<const OptionRow<RunOptions>> runRows() {
         // Camera.
         {{"eye", "camera", kWearer, "x,y,z", "middle of the eyes", "where `binosplat info` says"},
          field::make<kCamera, &CameraOptions::eye>("", readVector)},
-        {{"look", "camera", kWearer, "x,y,z", "point looked at"}, field::make<kCamera, &CameraOptions::look>("", readVector)},
+        {{"look", "camera", kWearer, "x,y,z", "point looked at"},
+         field::make<kCamera, &CameraOptions::look>("", readVector)},
         {{"up", "camera", kWearer, "x,y,z", "direction that is up in the picture",
           "of the cameras, the floor or the built-in scene, or 0,-1,0"},
          field::make<kCamera, &CameraOptions::up>("", readVector)},
-        {{"fov-x", "camera", kPictures, "DEG", "horizontal field of view", "60, or the built-in scene's view"},
+        {{"fov-x", "camera", kPictures, "DEG", "horizontal field of view",
+          "60, or the built-in scene's view"},
          field::number<kCamera, &CameraOptions::fov_x_deg>(0.1, 179.0)},
-        {{"size", "camera", kPictures, "WxH", "pixels per eye; one number for both sides", "1024x1024, or that of --cameras or --headset"},
+        {{"size", "camera", kPictures, "WxH", "pixels per eye; one number for both sides",
+          "1024x1024, or that of --cameras or --headset"},
          field::make<kCamera, &CameraOptions::size_px>(fmt::format("1 to {} each", kMaxSide), readSize)},
         {{"cameras", "camera", kWearer | kConvert, "FILE", "cameras.json of a 3DGS or 2DGS training",
           "with --view, the one beside SCENE or in its folder"},
          field::file<kCamera, &CameraOptions::cameras_file>()},
-        {{"view", "camera", kWearer, "N", "which camera of --cameras, from 0"}, field::count<kCamera, &CameraOptions::view>(0, kAny32)},
-        {{"headset", "camera", kPictures, "NAME", "angles, size and eye distance from configs/headsets/NAME.toml"},
+        {{"view", "camera", kWearer, "N", "which camera of --cameras, from 0"},
+         field::count<kCamera, &CameraOptions::view>(0, kAny32)},
+        {{"headset", "camera", kPictures, "NAME",
+          "angles, size and eye distance from configs/headsets/NAME.toml"},
          field::text<kCamera, &CameraOptions::headset>()},
-        {{"near", "camera", kWearer, "Z", "nearest depth that is drawn, in scene units or, in view, in the wearer's metres",
+        {{"near", "camera", kWearer, "Z",
+          "nearest depth that is drawn, in scene units or, in view, in the wearer's metres",
           "0.2, or a fifth of the size of a scene smaller than a unit"},
          field::number<kCamera, &CameraOptions::near>(1e-6, 1e6)},
         {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"},
          field::make<kCamera, &CameraOptions::background>("0 to 1 each", readColour)},
 
         // Stereo.
-        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made", "predicted; with view and --path temporal", /*required*/ false,
+        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made",
+          "predicted; with view and --path temporal", /*required*/ false,
           /*by_command*/ true},
          field::named<kStereo, &StereoOptions::mode>({kModeNames.begin(), kModeNames.end()})},
         {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"},
          field::named<kStereo, &StereoOptions::dominant>({"left", "right"})},
         {{"ipd", "stereo", kPictures, "METRES", "distance between the eyes", "0.063, or the headset's"},
          field::number<kStereo, &StereoOptions::ipd_m>(0.0, 10.0)},
-        {{"center-roi", "stereo", kTried, "", "paper mode: also render again the holes that remain inside the picture"},
+        {{"center-roi", "stereo", kTried, "",
+          "paper mode: also render again the holes that remain inside the picture"},
          field::flag<kStereo, kWarp, &StereoSettings::center_rois>()},
         {{"margin", "stereo", kTried, "PX", "paper mode: pixels added around what is rendered again"},
          slidesTo(128, field::count<kStereo, kWarp, &StereoSettings::margin_px>(0, kMaxSide))},
         {{"budget", "stereo", kTried, "FRACTION",
-          "share of work for patching the reprojected picture: of an eye's (predicted), of both eyes' (temporal)"},
+          "share of work for patching the reprojected picture: of an eye's (predicted), of both eyes' "
+          "(temporal)"},
          field::share<kStereo, kWarp, &StereoSettings::budget>()},
         {{"error-bound", "stereo", kTried, "DB",
-          "temporal mode: tiles expected to be under this PSNR, or up to 4.4 dB above it where contrast is low, are rendered again first, "
+          "temporal mode: tiles expected to be under this PSNR, or up to 4.4 dB above it where contrast is "
+          "low, are rendered again first, "
           "with --budget as the limit of a frame's work; 0: "
           "off"},
          field::number<kStereo, kWarp, &StereoSettings::error_bound_db>(0.0, 60.0)},
-        {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not reprojected"},
+        {{"move-cost", "stereo", kTried, "PAIRS",
+          "predicted mode: tiles that meet at most this many splats are rendered, not reprojected"},
          field::count<kStereo, kWarp, &StereoSettings::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
          field::named<kStereo, kWarp, &StereoSettings::depth_choice>({"sum", "mean", "inverse"})},
-        {{"order", "stereo", kTried, "KIND", "blending order: by depth, or by distance from the point midway between the eyes",
-          "the scene's, or depth; with view or --axes stay distance", /*required*/ false, /*by_command*/ true},
+        {{"order", "stereo", kTried, "KIND",
+          "blending order: by depth, or by distance from the point midway between the eyes",
+          "the scene's, or depth; with view or --axes stay distance", /*required*/ false,
+          /*by_command*/ true},
          field::named<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
-          "reproject and paper modes: reprojected pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in "
+          "reproject and paper modes: reprojected pixels are sampled with a cubic kernel, or copied forward "
+          "with gaps interpolated, as in "
           "the "
           "paper"},
          field::named<kStereo, kWarp, &StereoSettings::forward>({"cubic", "forward"})},
-        {{"per-eye", "stereo", kTried, "", "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
+        {{"per-eye", "stereo", kTried, "",
+          "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
          field::flag<kStereo, &StereoOptions::per_eye>()},
-        {{"gap-px", "stereo", kTried, "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes"},
+        {{"gap-px", "stereo", kTried, "PX",
+          "runs of uncovered pixels up to this long are interpolated, longer ones are holes"},
          field::count<kStereo, kWarp, &StereoSettings::gap_px>(0, kMaxGapPx)},
         {{"edge-samples", "stereo", kTried, "N", "paper mode: samples along each edge of the picture"},
          field::count<kStereo, kWarp, &StereoSettings::edge_samples>(1, kMaxSide)},
         {{"edge-bounds", "stereo", kTried, "KIND",
-          "paper mode: width of the re-rendered borders, as in the paper, or also covering disocclusion by near content"},
+          "paper mode: width of the re-rendered borders, as in the paper, or also covering disocclusion by "
+          "near content"},
          field::named<kStereo, kWarp, &StereoSettings::tight_edges>({"paper", "tight"})},
-        {{"hole-error", "stereo", kTried, "E", "predicted mode: weight of the error expected of a hole's pixel"},
+        {{"hole-error", "stereo", kTried, "E",
+          "predicted mode: weight of the error expected of a hole's pixel"},
          field::number<kStereo, kWarp, &StereoSettings::hole_error>(0.0, kMaxExpectedError)},
-        {{"newcomer-error", "stereo", kTried, "E", "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
+        {{"newcomer-error", "stereo", kTried, "E",
+          "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
          field::number<kStereo, kWarp, &StereoSettings::newcomer_error>(0.0, kMaxExpectedError)},
         {{"foveation", "stereo", kTried, "DEG",
-          "angle around the gaze within which all errors count; beyond it, only those the eye can see (predicted, temporal; mono and "
+          "angle around the gaze within which all errors count; beyond it, only those the eye can see "
+          "(predicted, temporal; mono and "
           "alternate with --periphery half); 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
         {{"periphery", "stereo", kTried, "KIND",
-          "mono, predicted, alternate and temporal modes, with --foveation: full resolution, or half of it where the eye would not see "
+          "mono, predicted, alternate and temporal modes, with --foveation: full resolution, or half of it "
+          "where the eye would not see "
           "more",
           "full; with view half", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::half_periphery>({"full", "half"})},
         {{"axes", "stereo", kWearer, "KIND",
-          "in a headset, with --path or --motion: the axes of the pictures follow the view, or stay while the head turns a few degrees; "
+          "in a headset, with --path or --motion: the axes of the pictures follow the view, or stay while "
+          "the head turns a few degrees; "
           "then "
           "pictures are shown as a headset's compositor shows them, resampled once to the view",
           "view; in a headset stay", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::axes>({"view", "stay"})},
-        {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward", "each lens's centre"},
+        {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward",
+          "each lens's centre"},
          field::make<kStereo, &StereoOptions::gaze>("of any length", readDirection)},
 
         // Scene.
-        {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},
+        {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest",
+          "the finest within --memory-limit"},
          field::count<kLoad, &LoadOptions::lod>(0, kAny32)},
         {{"splat-budget", "scene", kWearer, "N",
-          "most splats of a streamed SOG scene that are loaded at a time: levels are chosen by what the eyes see",
+          "most splats of a streamed SOG scene that are loaded at a time: levels are chosen by what the eyes "
+          "see",
           "the finest level, or what the memory holds"},
          noneIfZero(field::count<kLoad, &LoadOptions::splat_budget>(1, kMaxSplats))},
-        {{"scene-rate", "scene", kWearer, "HZ", "frames per second of a moving scene (a folder of numbered files)"},
+        {{"scene-rate", "scene", kWearer, "HZ",
+          "frames per second of a moving scene (a folder of numbered files)"},
          field::number<kLoad, &LoadOptions::scene_rate_hz>(0.01, kMaxRateHz)},
-        {{"scene-blend", "scene", kWearer, "", "interpolate between two frames of a moving scene, where their splats correspond"},
+        {{"scene-blend", "scene", kWearer, "",
+          "interpolate between two frames of a moving scene, where their splats correspond"},
          field::flag<kLoad, &LoadOptions::scene_blend>()},
-        {{"sh-degree", "scene", kScenes, "N", "highest band of colours to keep; lower ones take less memory and time", "the scene's"},
+        {{"sh-degree", "scene", kScenes, "N",
+          "highest band of colours to keep; lower ones take less memory and time", "the scene's"},
          field::count<kLoad, &LoadOptions::sh_degree>(0, kMaxShDegree)},
         {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, without the shortest axis of each"},
          field::flag<kLoad, &LoadOptions::flatten>()},
-        {{"antialiased", "scene", kScenes, "", "dim small 3D Gaussians, for scenes trained with antialiasing", "the file's"},
+        {{"antialiased", "scene", kScenes, "", "dim small 3D Gaussians, for scenes trained with antialiasing",
+          "the file's"},
          field::flag<kLoad, &LoadOptions::antialiased>()},
-        {{"cache-limit", "scene", kScenes, "MIB", "disk space for scenes from http and https addresses, which are kept for the next time"},
+        {{"cache-limit", "scene", kScenes, "MIB",
+          "disk space for scenes from http and https addresses, which are kept for the next time"},
          field::count<kLoad, &LoadOptions::cache_limit_mib>(0, kMaxMemoryMib)},
         {{"metres-per-unit", "scene", kWearer, "M", "metres in one scene unit"},
          field::make<&RunOptions::metres_per_unit>("greater than 0", readPositive)},
@@ -192,33 +225,43 @@ std::span<const OptionRow<RunOptions>> runRows() {
         // Run.
         {{"memory-limit", "run", kWearer, "MIB", "device memory that may be used", "all there is"},
          noneIfZero(field::count<&RunOptions::memory_limit_mib>(1, kMaxMemoryMib))},
-        {{"device", "run", kDevices | kConvert, "NAME|INDEX", "GPU to use: part of its name, or its number", "the most capable"},
+        {{"device", "run", kDevices | kConvert, "NAME|INDEX", "GPU to use: part of its name, or its number",
+          "the most capable"},
          field::text<&RunOptions::device>()},
     };
     return rows;
 }
 
 const OptionRow<RunOptions>* findRunRow(std::string_view key) {
-    const auto found = std::ranges::find(runRows(), key, [](const auto& row) { return std::string_view(row.text.key); });
+    const auto found =
+        std::ranges::find(runRows(), key, [](const auto& row) { return std::string_view(row.text.key); });
     return found == runRows().end() ? nullptr : &*found;
 }
 
 std::span<const OptionRow<RenderOptions>> renderRows() {
     static const std::vector<OptionRow<RenderOptions>> rows{
-        {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::file<&RenderOptions::out>()},
-        {{"layout", "", kRender, "KIND", "both eyes in pictures of their own, or in one: side by side, or top and bottom (the left eye's)"},
+        {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true},
+         field::file<&RenderOptions::out>()},
+        {{"layout", "", kRender, "KIND",
+          "both eyes in pictures of their own, or in one: side by side, or top and bottom (the left eye's)"},
          field::named<&RenderOptions::layout>({"separate", "sbs", "tb"})},
         {{"projection", "", kRender, "KIND",
-          "flat, or for headsets: vr180, all that lies ahead of both eyes, or 360, all around; the last two by equal angles, level and in "
+          "flat, or for headsets: vr180, all that lies ahead of both eyes, or 360, all around; the last two "
+          "by equal angles, level and in "
           "full"},
          field::named<&RenderOptions::projection>({"flat", "vr180", "360"})},
-        {{"video", "", kRender, "", "with --path: also video.mp4 of its frames, by ffmpeg"}, field::flag<&RenderOptions::video>()},
-        {{"resume", "", kRender, "", "with --path: continue after the frames that a stopped run left in --out"},
+        {{"video", "", kRender, "", "with --path: also video.mp4 of its frames, by ffmpeg"},
+         field::flag<&RenderOptions::video>()},
+        {{"resume", "", kRender, "",
+          "with --path: continue after the frames that a stopped run left in --out"},
          field::flag<&RenderOptions::resume>()},
-        {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
+        {{"path", "", kRender, "POSES.csv",
+          "head poses to render relative to the camera, one numbered frame after the other"},
          field::file<&RenderOptions::path>()},
-        {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::named<&RenderOptions::path_axes>({"openxr", "unity"})},
-        {{"from", "", kRender, "S", "second of --path at which the frames begin; the head is at the camera then"},
+        {{"path-axes", "", kRender, "AXES", "axes of --path"},
+         field::named<&RenderOptions::path_axes>({"openxr", "unity"})},
+        {{"from", "", kRender, "S",
+          "second of --path at which the frames begin; the head is at the camera then"},
          field::number<kPathSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
         {{"seconds", "", kRender, "S", "length of the part of --path that is rendered", "the rest of it"},
          field::number<kPathSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
@@ -230,30 +273,39 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
 
 std::span<const OptionRow<BenchOptions>> benchRows() {
     static const std::vector<OptionRow<BenchOptions>> rows{
-        {{"out", "", kBench, "DIR", "directory for bench.json, bench.csv and bench.svg", "", /*required*/ true},
+        {{"out", "", kBench, "DIR", "directory for bench.json, bench.csv and bench.svg", "",
+          /*required*/ true},
          field::file<&BenchOptions::out>()},
-        {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"}, field::file<&BenchOptions::motion_file>()},
-        {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::named<&BenchOptions::motion_axes>({"openxr", "unity"})},
-        {{"from", "", kBench, "S", "second of --motion at which the frames begin; the head is at the camera then"},
+        {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"},
+         field::file<&BenchOptions::motion_file>()},
+        {{"motion-axes", "", kBench, "AXES", "axes of --motion"},
+         field::named<&BenchOptions::motion_axes>({"openxr", "unity"})},
+        {{"from", "", kBench, "S",
+          "second of --motion at which the frames begin; the head is at the camera then"},
          field::number<kMotionSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
         {{"seconds", "", kBench, "S", "length of the part of --motion that is played", "the rest of it"},
          field::number<kMotionSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
         {{"rate", "", kBench, "HZ", "frames per second of --motion, between its poses", "one for each pose"},
          field::number<kMotionSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
         {{"frame-time", "", kBench, "MS",
-          "with --motion: time that a frame of temporal may take; the viewer's controller (balanced) chooses size and bound for it; 0: no "
+          "with --motion: time that a frame of temporal may take; the viewer's controller (balanced) chooses "
+          "size and bound for it; 0: no "
           "limit"},
          field::number<&BenchOptions::frame_ms>(0.0, 10000.0)},
         {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
          field::file<&BenchOptions::photos_folder>()},
         {{"orders", "", kBench, "",
-          "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels that pop"},
+          "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels "
+          "that pop"},
          field::flag<&BenchOptions::orders>()},
-        {{"every", "", kBench, "N", "score only every Nth frame of --motion (methods with a history render all), or camera of --photos"},
+        {{"every", "", kBench, "N",
+          "score only every Nth frame of --motion (methods with a history render all), or camera of "
+          "--photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
         {{"repeats", "", kBench, "N", "measured frames per method", "5, or the config's"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
-        {{"lpips", "", kBench, "WEIGHTS", "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
+        {{"lpips", "", kBench, "WEIGHTS",
+          "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
          field::file<&BenchOptions::lpips_weights>()},
     };
     return rows;
@@ -261,18 +313,26 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
 
 std::span<const OptionRow<ViewOptions>> viewRows() {
     static const std::vector<OptionRow<ViewOptions>> rows{
-        {{"out", "", kView, "DIR", "directory for the simulated headset's pictures"}, field::file<&ViewOptions::out>()},
+        {{"out", "", kView, "DIR", "directory for the simulated headset's pictures"},
+         field::file<&ViewOptions::out>()},
         {{"compare", "", kView, "SCENE",
-          "another scene of the same place, to compare: in a window beside a curtain, in a headset while X or A is held"},
+          "another scene of the same place, to compare: in a window beside a curtain, in a headset while X "
+          "or A is held"},
          field::file<&ViewOptions::compare>()},
-        {{"desktop", "", kView, "", "show the scene in a window, even if there is a headset"}, field::flag<&ViewOptions::desktop>()},
-        {{"headset-only", "", kView, "", "end with exit code 3 if there is no headset, instead of showing the scene in a window"},
+        {{"desktop", "", kView, "", "show the scene in a window, even if there is a headset"},
+         field::flag<&ViewOptions::desktop>()},
+        {{"headset-only", "", kView, "",
+          "end with exit code 3 if there is no headset, instead of showing the scene in a window"},
          field::flag<&ViewOptions::headset_only>()},
-        {{"frames", "", kView, "N", "stop after N frames", "never"}, noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
-        {{"load-first", "", kView, "", "load the scene before the session starts, not during it"}, field::flag<&ViewOptions::load_first>()},
+        {{"frames", "", kView, "N", "stop after N frames", "never"},
+         noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
+        {{"load-first", "", kView, "", "load the scene before the session starts, not during it"},
+         field::flag<&ViewOptions::load_first>()},
         {{"hide-panel", "", kView, "", "start without the panel"}, field::flag<&ViewOptions::hide_panel>()},
-        {{"hide-hands", "", kView, "", "draw neither hands nor controllers"}, field::flag<&ViewOptions::hide_hands>()},
-        {{"shaders", "", kView, "DIR", "for work on the shaders: a button of the panel, and F5, reload them from there"},
+        {{"hide-hands", "", kView, "", "draw neither hands nor controllers"},
+         field::flag<&ViewOptions::hide_hands>()},
+        {{"shaders", "", kView, "DIR",
+          "for work on the shaders: a button of the panel, and F5, reload them from there"},
          field::file<&ViewOptions::shaders>()},
         {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},
          field::file<&ViewOptions::script>([](const Setting& s) { return s.text(); })},
@@ -284,17 +344,20 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
     static const std::vector<OptionRow<SceneOptions>> rows{
         {{"splats", "", kScene, "N", "how many splats", "the scene's own number"},
          noneIfZero(field::count<&SceneOptions::splats>(1, kMaxSplats))},
-        {{"out", "", kScene, "FILE.ply", "file to write", "", /*required*/ true}, field::file<&SceneOptions::out>()},
+        {{"out", "", kScene, "FILE.ply", "file to write", "", /*required*/ true},
+         field::file<&SceneOptions::out>()},
     };
     return rows;
 }
 
 std::span<const OptionRow<ConvertOptions>> convertRows() {
     static const std::vector<OptionRow<ConvertOptions>> rows{
-        {{"crop", "", kConvert, "x,y,z,r", "keep the splats whose centres lie in this sphere, in scene units"},
+        {{"crop", "", kConvert, "x,y,z,r",
+          "keep the splats whose centres lie in this sphere, in scene units"},
          field::make<&ConvertOptions::crop>("", readSphere)},
         {{"keep", "", kConvert, "SHARE|N|SIZE",
-          "keep a share of the splats (0.5), a number (100000), or as many as fit into a file (50MB): those that show most, which take "
+          "keep a share of the splats (0.5), a number (100000), or as many as fit into a file (50MB): those "
+          "that show most, which take "
           "over "
           "what the others showed",
           "all of them"},
@@ -316,17 +379,20 @@ std::span<const OptionRow<ConvertOptions>> convertRows() {
 
 std::span<const OptionRow<CompareOptions>> compareRows() {
     static const std::vector<OptionRow<CompareOptions>> rows{
-        {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
+        {{"lpips", "", kCompare, "WEIGHTS",
+          "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
          field::file<&CompareOptions::lpips_weights>()},
         {{"pixels-per-degree", "", kCompare, "N", "pixels per degree that FLIP assumes", "67.02"},
-         field::number<&CompareOptions::pixels_per_degree>(kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree)},
+         field::number<&CompareOptions::pixels_per_degree>(kFlipLeastPixelsPerDegree,
+                                                           kFlipMostPixelsPerDegree)},
     };
     return rows;
 }
 
 std::span<const OptionRow<StabilityOptions>> stabilityRows() {
     static const std::vector<OptionRow<StabilityOptions>> rows{
-        {{"out", "", kStability, "DIR", "directory for stability.txt, stability.csv and stability.svg", "", /*required*/ true},
+        {{"out", "", kStability, "DIR", "directory for stability.txt, stability.csv and stability.svg", "",
+          /*required*/ true},
          field::file<&StabilityOptions::out>()},
     };
     return rows;

@@ -56,7 +56,9 @@ std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) 
 template <typename Owner>
 Owner readRows(std::span<const OptionRow<Owner>> rows, const Settings& settings, Owner options = {}) {
     for (const OptionRow<Owner>& row : rows) {
-        if (const auto found = settings.find(row.text.key); found != settings.end()) { row.field.read(found->second, options); }
+        if (const auto found = settings.find(row.text.key); found != settings.end()) {
+            row.field.read(found->second, options);
+        }
     }
     return options;
 }

@@ -196,8 +196,8 @@ struct HelpText {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, CompareOptions,
-                             StabilityOptions, KernelsOptions, HelpText>;
+using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions,
+                             ConvertOptions, CompareOptions, StabilityOptions, KernelsOptions, HelpText>;
 
 // Throws Error: kUsage if the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);

@@ -25,14 +25,18 @@ std::optional<std::size_t> firstThatSees(const std::vector<FileCamera>& cameras,
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         const Eye& eye = cameras[i].eye;
         const Pose camera_from_world = inverse(eye.world_from_camera);
-        const auto seen = std::ranges::count_if(
-            samples, [&](const SplatSample& sample) { return isInPicture(eye, transform(camera_from_world, sample.centre)); });
-        if (seen > 0 && static_cast<double>(seen) >= kLeastSeen * static_cast<double>(samples.size())) { return i; }
+        const auto seen = std::ranges::count_if(samples, [&](const SplatSample& sample) {
+            return isInPicture(eye, transform(camera_from_world, sample.centre));
+        });
+        if (seen > 0 && static_cast<double>(seen) >= kLeastSeen * static_cast<double>(samples.size())) {
+            return i;
+        }
     }
     return std::nullopt;
 }
 
-std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& own, const StandpointWish& wish) {
+std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& own,
+                                      const StandpointWish& wish) {
     const std::optional<std::size_t> first = firstThatSees(own.cameras, scene);
     if (!first) { return std::nullopt; }
     const FileCamera& camera = own.cameras[*first];
@@ -40,14 +44,17 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
     const auto with = [&](const std::optional<glm::dvec3>& up, const std::string& up_why) {
         const View view = viewFrom(camera.eye.world_from_camera, up, scene, wish.fov_x_deg);
         const bool keeps_own = up && glm::dot(view.up, glm::normalize(*up)) < kAbout;
-        return StartView{view, at, up_why + (keeps_own ? "; this camera looks along it and keeps its own" : "")};
+        return StartView{view, at,
+                         up_why + (keeps_own ? "; this camera looks along it and keeps its own" : "")};
     };
     if (wish.up) { return with(wish.up, "given"); }
     if (const auto found = upOfCameras(own.cameras, scene)) { return with(found->up, found->why); }
     return with({}, "this camera's, since the cameras look every way");
 }
 
-glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) { return camera.eye.world_from_camera.orientation * axis; }
+glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) {
+    return camera.eye.world_from_camera.orientation * axis;
+}
 
 // True for cameras that turn about their own up far more than they roll, as in front of a wall: a camera that
 // looks straight down keeps its line of sight plumb, and is as free to turn about that.
@@ -70,7 +77,8 @@ bool keepLevel(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, 
 
 // True for cameras that all look one way, and are as far apart along their own up as those of a drone that
 // looks straight down, or of one in front of a facade: a walking person's are not.
-bool mayLookDown(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up, const Scene& scene) {
+bool mayLookDown(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up,
+                 const Scene& scene) {
     constexpr double kAllOneWay = 0.97, kLeastApart = 0.5;  // of their distance from the scene
     if (!(glm::length(ahead) > kAllOneWay) || keepLevel(cameras, ahead, up)) { return false; }
     std::vector<double> heights, distances;
@@ -79,7 +87,9 @@ bool mayLookDown(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead
         distances.push_back(glm::dot(camera.eye.world_from_camera.position, ahead));
     }
     std::vector<double> depths;
-    for (const SplatSample& sample : sampleSplats(scene, kMostForCameras)) { depths.push_back(glm::dot(sample.centre, ahead)); }
+    for (const SplatSample& sample : sampleSplats(scene, kMostForCameras)) {
+        depths.push_back(glm::dot(sample.centre, ahead));
+    }
     if (depths.empty()) { return false; }
     const auto [low, high] = std::ranges::minmax(heights);
     const double distance = findQuantile(depths, 0.5) - findQuantile(distances, 0.5);
@@ -109,7 +119,9 @@ std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, con
     // A drone's cameras that look straight down have their up in every direction, or all along one course.
     if (!(glm::length(up) > 0.5)) {
         const auto floor = upBeneath(scene, place);
-        return floor ? std::optional(CamerasUp{*floor, "that of the floor beneath the cameras, which look every way"}) : std::nullopt;
+        return floor ? std::optional(
+                           CamerasUp{*floor, "that of the floor beneath the cameras, which look every way"})
+                     : std::nullopt;
     }
     up = glm::normalize(up);
     if (mayLookDown(cameras, ahead, up, scene)) {
@@ -121,14 +133,18 @@ std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, con
     return CamerasUp{up, "the mean of all cameras'"};
 }
 
-View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene, double fov_x_deg) {
-    const glm::dvec3 eye = world_from_camera.position, ahead = world_from_camera.orientation * glm::dvec3(0.0, 0.0, 1.0),
+View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene,
+              double fov_x_deg) {
+    const glm::dvec3 eye = world_from_camera.position,
+                     ahead = world_from_camera.orientation * glm::dvec3(0.0, 0.0, 1.0),
                      own_up = world_from_camera.orientation * glm::dvec3(0.0, -1.0, 0.0);
     // For a view straight along the mean up, only the camera's own up is usable.
     const bool usable = up && std::abs(glm::dot(glm::normalize(*up), ahead)) < 0.99;
     std::vector<double> depths;
     for (const SplatSample& sample : sampleSplats(scene, kMostForCameras)) {
-        if (const double depth = glm::dot(sample.centre - eye, ahead); depth > 0.0) { depths.push_back(depth); }
+        if (const double depth = glm::dot(sample.centre - eye, ahead); depth > 0.0) {
+            depths.push_back(depth);
+        }
     }
     const double distance = depths.empty() ? 1.0 : std::max(findQuantile(depths, 0.5), 1e-6);
     return {eye, eye + distance * ahead, usable ? glm::normalize(*up) : own_up, fov_x_deg};
@@ -156,9 +172,12 @@ View startView(const Scene& scene, const CameraOptions& camera, double metres_pe
         const std::vector<FileCamera> given = readCameraFile(camera.cameras_file, scene.origin);
         requireView(camera, given);
         const auto up = upOfCameras(given, scene);
-        return viewFrom(given[camera.view].eye.world_from_camera, up ? std::optional(up->up) : std::nullopt, scene, fov_x_deg);
+        return viewFrom(given[camera.view].eye.world_from_camera, up ? std::optional(up->up) : std::nullopt,
+                        scene, fov_x_deg);
     }
-    const auto inScene = [&](const std::optional<glm::dvec3>& place) { return place ? std::optional(*place - scene.origin) : place; };
+    const auto inScene = [&](const std::optional<glm::dvec3>& place) {
+        return place ? std::optional(*place - scene.origin) : place;
+    };
     const std::optional<glm::dvec3> eye = inScene(camera.eye), look = inScene(camera.look);
     View view;
     if (eye && look && !isBuiltin(scene.name)) {

@@ -32,7 +32,8 @@ struct CamerasUp {
 std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, const Scene& scene);
 
 // The camera's view, upright along `up`: `look` is at the median depth of the scene.
-View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene, double fov_x_deg);
+View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene,
+              double fov_x_deg);
 
 struct StartView {
     View view;

@@ -8,7 +8,9 @@
 
 namespace binosplat {
 
-bool PlotAxis::shows(double value) const { return std::isfinite(value) && (scale_ == Scale::kLinear || value > 0.0); }
+bool PlotAxis::shows(double value) const {
+    return std::isfinite(value) && (scale_ == Scale::kLinear || value > 0.0);
+}
 
 void PlotAxis::include(double value) {
     low_ = empty_ ? value : std::min(low_, value);
@@ -39,13 +41,15 @@ void PlotAxis::round() {
 // From one of 1, 2 or 5 times a power of ten to another: the last below and the first above; a single value
 // gets a margin on both sides.
 void PlotAxis::roundLog() {
-    const int first = static_cast<int>(std::floor(std::log10(low_))) - 1, last = static_cast<int>(std::ceil(std::log10(high_))) + 1;
+    const int first = static_cast<int>(std::floor(std::log10(low_))) - 1,
+              last = static_cast<int>(std::ceil(std::log10(high_))) + 1;
     std::vector<double> all;
     for (int decade = first; decade <= last; ++decade) {
         for (double digit : {1.0, 2.0, 5.0}) { all.push_back(digit * std::pow(10.0, decade)); }
     }
     constexpr double kSlack = 1.0 + 1e-9;
-    const auto above = std::ranges::find_if(all, [&](double tick) { return tick * kSlack >= high_ && tick > low_; });
+    const auto above =
+        std::ranges::find_if(all, [&](double tick) { return tick * kSlack >= high_ && tick > low_; });
     auto below = above;
     while (*below > low_ * kSlack || below == above) { --below; }
     ticks_.assign(below, above + 1);
@@ -59,12 +63,14 @@ void PlotAxis::roundLinear() {
     for (double digit : {2.0, 5.0, 10.0}) {
         if (range / step > 8.0) { step = digit * power; }
     }
-    const double first = std::floor(low_ / step + 1e-9), last = std::max(std::ceil(high_ / step - 1e-9), first + 1.0);
+    const double first = std::floor(low_ / step + 1e-9),
+                 last = std::max(std::ceil(high_ / step - 1e-9), first + 1.0);
     for (double i = first; i <= last; i += 1.0) { ticks_.push_back(i * step); }
 }
 
 double PlotAxis::share(double value) const {
-    return scale_ == Scale::kLog ? std::log(value / low_) / std::log(high_ / low_) : (value - low_) / (high_ - low_);
+    return scale_ == Scale::kLog ? std::log(value / low_) / std::log(high_ / low_)
+                                 : (value - low_) / (high_ - low_);
 }
 
 std::string shortNumber(double value) {

@@ -16,11 +16,18 @@ constexpr double kPanelWidth = 680.0, kPanelHeight = 420.0, kTitleHeight = 46.0;
 constexpr double kLeftMargin = 70.0, kRightMargin = 210.0, kTopMargin = 34.0, kBottomMargin = 54.0;
 
 // Colours that the colour-blind tell apart (Okabe and Ito, 2008), and a dash for the second round.
-constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7f7f7f"};
+constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                              "#e69f00", "#56b4e9", "#000000", "#7f7f7f"};
 
 std::string escape(const std::string& text) {
     std::string result;
-    for (char c : text) { result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c); }
+    for (char c : text) {
+        result += c == '&'   ? "&amp;"
+                  : c == '<' ? "&lt;"
+                  : c == '>' ? "&gt;"
+                  : c == '"' ? "&quot;"
+                             : std::string(1, c);
+    }
     return result;
 }
 
@@ -32,7 +39,8 @@ public:
         bool on_left;
     };
 
-    NamePlaces(double left, double right, double top, double bottom) : left_(left), right_(right), top_(top), bottom_(bottom) {}
+    NamePlaces(double left, double right, double top, double bottom)
+        : left_(left), right_(right), top_(top), bottom_(bottom) {}
 
     // Empty if there is no room.
     std::optional<Place> find(double x, double y, const std::string& name) {
@@ -40,9 +48,14 @@ public:
         for (const double below : {-5.0, 13.0}) {
             for (const bool on_left : {x > 0.5 * (left_ + right_), x <= 0.5 * (left_ + right_)}) {
                 const Place place{x + (on_left ? -6.0 : 6.0), y + below, on_left};
-                const Box box{on_left ? place.x - width : place.x, on_left ? place.x : place.x + width, place.y - 9.0, place.y + 2.0};
-                const bool inside = box.left >= left_ && box.right <= right_ && box.top >= top_ && box.bottom <= bottom_;
-                if (!inside || std::ranges::any_of(taken_, [&](const Box& other) { return overlap(box, other); })) { continue; }
+                const Box box{on_left ? place.x - width : place.x, on_left ? place.x : place.x + width,
+                              place.y - 9.0, place.y + 2.0};
+                const bool inside =
+                    box.left >= left_ && box.right <= right_ && box.top >= top_ && box.bottom <= bottom_;
+                if (!inside ||
+                    std::ranges::any_of(taken_, [&](const Box& other) { return overlap(box, other); })) {
+                    continue;
+                }
                 taken_.push_back(box);
                 return place;
             }
@@ -55,7 +68,9 @@ private:
         double left, right, top, bottom;
     };
     static constexpr double kNameCharacter = 5.6;  // approximate width of a letter at 10 px
-    static bool overlap(const Box& a, const Box& b) { return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom; }
+    static bool overlap(const Box& a, const Box& b) {
+        return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    }
 
     double left_, right_, top_, bottom_;
     std::vector<Box> taken_;
@@ -104,20 +119,28 @@ private:
     [[nodiscard]] double toY(double value) const { return y0_ + (y1_ - y0_) * y_axis_.share(value); }
 
     [[nodiscard]] std::string drawAxes() const {
-        std::string svg = fmt::format("<text x='{:.1f}' y='{:.1f}' class='panel'>{}</text>\n", x0_, top_ + 20.0, escape(panel_.title));
+        std::string svg = fmt::format("<text x='{:.1f}' y='{:.1f}' class='panel'>{}</text>\n", x0_,
+                                      top_ + 20.0, escape(panel_.title));
         for (double tick : x_axis_.ticks()) {
-            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}' class='grid'/>", toX(tick), y0_, y1_);
-            svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", toX(tick), y0_ + 16.0, shortNumber(tick));
+            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}' class='grid'/>",
+                               toX(tick), y0_, y1_);
+            svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", toX(tick),
+                               y0_ + 16.0, shortNumber(tick));
         }
         for (double tick : y_axis_.ticks()) {
-            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' class='grid'/>", x0_, toY(tick), x1_);
-            svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='end'>{}</text>\n", x0_ - 6.0, toY(tick) + 4.0, shortNumber(tick));
+            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' class='grid'/>",
+                               x0_, toY(tick), x1_);
+            svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='end'>{}</text>\n", x0_ - 6.0,
+                               toY(tick) + 4.0, shortNumber(tick));
         }
-        svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class='frame'/>\n", x0_, y1_, x1_ - x0_, y0_ - y1_);
-        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", 0.5 * (x0_ + x1_), y0_ + 38.0,
-                           escape(panel_.x_label));
-        svg += fmt::format("<text x='{0:.1f}' y='{1:.1f}' text-anchor='middle' transform='rotate(-90 {0:.1f} {1:.1f})'>{2}</text>\n",
-                           left_ + 18.0, 0.5 * (y0_ + y1_), escape(panel_.y_label));
+        svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class='frame'/>\n",
+                           x0_, y1_, x1_ - x0_, y0_ - y1_);
+        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", 0.5 * (x0_ + x1_),
+                           y0_ + 38.0, escape(panel_.x_label));
+        svg += fmt::format(
+            "<text x='{0:.1f}' y='{1:.1f}' text-anchor='middle' transform='rotate(-90 {0:.1f} "
+            "{1:.1f})'>{2}</text>\n",
+            left_ + 18.0, 0.5 * (y0_ + y1_), escape(panel_.y_label));
         return svg;
     }
 
@@ -143,7 +166,9 @@ private:
             const double x = toX(line.points[i].first), y = toY(line.points[i].second);
             path += fmt::format("{}{:.1f},{:.1f} ", broken ? "M" : "L", x, y);
             broken = false;
-            if (line.dots) { svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x, y, colour); }
+            if (line.dots) {
+                svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x, y, colour);
+            }
             if (line.names.empty()) { continue; }
             if (const auto place = places.find(x, y, line.names[i])) {
                 svg += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'{}>{}</text>", place->x, place->y,
@@ -151,16 +176,21 @@ private:
             }
         }
         if (line.joined && !path.empty()) {
-            svg += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.5'{}/>", path, colour, dash);
+            svg += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.5'{}/>", path, colour,
+                               dash);
         }
         const double legend_y = y1_ + 10.0 + 18.0 * static_cast<double>(index);
         if (line.joined) {
-            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' stroke='{3}' stroke-width='2'{4}/>", x1_ + 12.0,
-                               legend_y, x1_ + 34.0, colour, dash);
+            svg += fmt::format(
+                "<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' stroke='{3}' "
+                "stroke-width='2'{4}/>",
+                x1_ + 12.0, legend_y, x1_ + 34.0, colour, dash);
         } else {
-            svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x1_ + 23.0, legend_y, colour);
+            svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x1_ + 23.0, legend_y,
+                               colour);
         }
-        return svg + fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>\n", x1_ + 40.0, legend_y + 4.0, escape(line.label));
+        return svg + fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>\n", x1_ + 40.0, legend_y + 4.0,
+                                 escape(line.label));
     }
 
     const PlotPanel& panel_;
@@ -181,13 +211,18 @@ std::string drawPlot(const std::string& title, const std::vector<PlotPanel>& pan
     const double rows = static_cast<double>((panels.size() + 1) / 2);
     const double width = columns * kPanelWidth, height = kTitleHeight + rows * kPanelHeight;
     std::string svg = fmt::format(
-        "<svg xmlns='http://www.w3.org/2000/svg' width='{0:.0f}' height='{1:.0f}' viewBox='0 0 {0:.0f} {1:.0f}'>\n", width, height);
+        "<svg xmlns='http://www.w3.org/2000/svg' width='{0:.0f}' height='{1:.0f}' viewBox='0 0 {0:.0f} "
+        "{1:.0f}'>\n",
+        width, height);
     svg +=
-        "<style>text{font:12px sans-serif;fill:#222} .title{font-size:17px;font-weight:bold} .panel{font-size:13px;font-weight:bold} "
-        ".name{font-size:10px} .grid{stroke:#ddd} .frame{fill:none;stroke:#444}</style>\n<rect width='100%' height='100%' fill='white'/>\n";
+        "<style>text{font:12px sans-serif;fill:#222} .title{font-size:17px;font-weight:bold} "
+        ".panel{font-size:13px;font-weight:bold} "
+        ".name{font-size:10px} .grid{stroke:#ddd} .frame{fill:none;stroke:#444}</style>\n<rect width='100%' "
+        "height='100%' fill='white'/>\n";
     svg += fmt::format("<text x='{:.1f}' y='30' class='title'>{}</text>\n", kLeftMargin, escape(title));
     for (std::size_t i = 0; i < panels.size(); ++i) {
-        svg += PanelDrawing(panels[i], static_cast<double>(i % 2) * kPanelWidth, kTitleHeight + static_cast<double>(i / 2) * kPanelHeight)
+        svg += PanelDrawing(panels[i], static_cast<double>(i % 2) * kPanelWidth,
+                            kTitleHeight + static_cast<double>(i / 2) * kPanelHeight)
                    .draw();
     }
     return svg + "</svg>\n";

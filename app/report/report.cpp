@@ -46,10 +46,15 @@ Json valueJson(const OptionValue& value) {
 
 // Every option under its own name with the value that was used; null for one that did not apply.
 Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
-    Json json{{"scene", options.scene}, {"config", options.run.config.empty() ? Json() : Json(options.run.config)}};
-    for (const OptionRow<RenderOptions>& row : renderRows()) { json[row.text.key] = valueJson(row.field.value(options)); }
+    Json json{{"scene", options.scene},
+              {"config", options.run.config.empty() ? Json() : Json(options.run.config)}};
+    for (const OptionRow<RenderOptions>& row : renderRows()) {
+        json[row.text.key] = valueJson(row.field.value(options));
+    }
     if (options.path.empty()) { json["path-axes"] = Json(); }
-    for (const OptionRow<RunOptions>& row : runRows()) { json[row.text.key] = valueJson(row.field.value(options.run)); }
+    for (const OptionRow<RunOptions>& row : runRows()) {
+        json[row.text.key] = valueJson(row.field.value(options.run));
+    }
     // Missing camera options come from the scene, a headset or a camera file.
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
     json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
@@ -64,7 +69,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
 
 Json eyesJson(const Cameras& cameras, bool mono) {
     if (mono) { return {{"mono", eyeJson(cameras.middle, cameras.origin)}}; }
-    return {{"left", eyeJson(cameras.eyes[kLeft], cameras.origin)}, {"right", eyeJson(cameras.eyes[kRight], cameras.origin)}};
+    return {{"left", eyeJson(cameras.eyes[kLeft], cameras.origin)},
+            {"right", eyeJson(cameras.eyes[kRight], cameras.origin)}};
 }
 
 // `json`, with a frame's costs added.
@@ -82,7 +88,9 @@ Json withCosts(Json json, const FrameResult& frame) {
     return json;
 }
 
-std::string printed(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string printed(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 std::vector<double> sortedTotals(const PathReport& report) {
     std::vector<double> totals;
@@ -114,9 +122,10 @@ PassTimes addUp(const PassTimes& times) {
 
 std::string reportJson(const FrameReport& report) {
     const bool mono = report.options.run.stereo.mode == Mode::kMono;
-    Json root = withCosts(
-        {{"device", report.device}, {"options", optionsJson(report.options, report.cameras)}, {"eyes", eyesJson(report.cameras, mono)}},
-        report.frame);
+    Json root = withCosts({{"device", report.device},
+                           {"options", optionsJson(report.options, report.cameras)},
+                           {"eyes", eyesJson(report.cameras, mono)}},
+                          report.frame);
     root["peak_gpu_bytes"] = report.frame.peak_gpu_bytes;
     root["left_out"] = report.frame.left_out;
     return printed(root);
@@ -127,7 +136,8 @@ std::string reportJson(const PathReport& report) {
     Json frames = Json::array();
     std::uint64_t peak_bytes = 0;
     for (const PathFrame& frame : report.frames) {
-        frames.push_back(withCosts({{"time_s", frame.time_s}, {"eyes", eyesJson(frame.cameras, mono)}}, frame.frame));
+        frames.push_back(
+            withCosts({{"time_s", frame.time_s}, {"eyes", eyesJson(frame.cameras, mono)}}, frame.frame));
         peak_bytes = std::max(peak_bytes, frame.frame.peak_gpu_bytes);
     }
     const std::vector<double> totals = sortedTotals(report);
@@ -141,28 +151,34 @@ std::string reportJson(const PathReport& report) {
 
 std::string reportTable(const PathReport& report) {
     const std::vector<double> totals = sortedTotals(report);
-    return fmt::format("{}, {}, {}x{} per eye, on {}\n  {} frames along {}, median {:.3f} ms, longest {:.3f} ms\n", report.options.scene,
-                       nameOf(report.options.run.stereo.mode), report.start.middle.size_px.x, report.start.middle.size_px.y, report.device,
-                       totals.size(), report.options.path, totals[totals.size() / 2], totals.back()) +
+    return fmt::format(
+               "{}, {}, {}x{} per eye, on {}\n  {} frames along {}, median {:.3f} ms, longest {:.3f} ms\n",
+               report.options.scene, nameOf(report.options.run.stereo.mode), report.start.middle.size_px.x,
+               report.start.middle.size_px.y, report.device, totals.size(), report.options.path,
+               totals[totals.size() / 2], totals.back()) +
            streamedLine(report);
 }
 
 std::string reportTable(const FrameReport& report) {
-    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, nameOf(report.options.run.stereo.mode),
-                                    report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
+    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene,
+                                    nameOf(report.options.run.stereo.mode), report.cameras.middle.size_px.x,
+                                    report.cameras.middle.size_px.y, report.device);
     const double percent = report.frame.gpu_total_ms > 0.0 ? 100.0 / report.frame.gpu_total_ms : 0.0;
     for (const auto& [label, ms] : addUp(report.frame.gpu_ms)) {
         table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", label.text(), ms, ms * percent);
     }
     table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.frame.gpu_total_ms);
-    for (const auto& [name, count] : report.frame.counters.named()) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
-    if (!report.frame.stereo_bytes_per_pixel.empty()) {
-        table += fmt::format("  {:<28} {:>14.1f} bytes\n", "memory traffic per pixel", report.frame.stereo_bytes_per_pixel.back().second);
-        table += fmt::format("  {:<28} {:>14.1f} %, {:.1f} % of the work\n", "tiles rendered again", 100.0 * report.frame.tiles_rendered,
-                             100.0 * report.frame.work_rendered);
+    for (const auto& [name, count] : report.frame.counters.named()) {
+        table += fmt::format("  {:<28} {:>14}\n", name, count);
     }
-    table +=
-        fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.frame.peak_gpu_bytes) / (1024.0 * 1024.0));
+    if (!report.frame.stereo_bytes_per_pixel.empty()) {
+        table += fmt::format("  {:<28} {:>14.1f} bytes\n", "memory traffic per pixel",
+                             report.frame.stereo_bytes_per_pixel.back().second);
+        table += fmt::format("  {:<28} {:>14.1f} %, {:.1f} % of the work\n", "tiles rendered again",
+                             100.0 * report.frame.tiles_rendered, 100.0 * report.frame.work_rendered);
+    }
+    table += fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory",
+                         static_cast<double>(report.frame.peak_gpu_bytes) / (1024.0 * 1024.0));
     return table;
 }
 

@@ -25,12 +25,16 @@ public:
         std::string text;
         for (std::size_t begin = 1, end = 1; begin == 1 || begin < widths_.size(); begin = end) {
             std::size_t width = kGap + widths_[0];
-            for (; end < widths_.size() && (end == begin || width + kGap + widths_[end] <= most); ++end) { width += kGap + widths_[end]; }
+            for (; end < widths_.size() && (end == begin || width + kGap + widths_[end] <= most); ++end) {
+                width += kGap + widths_[end];
+            }
             end = std::max(end, begin + 1);
             for (const std::vector<std::string>& row : rows_) {
                 if (begin > 1 && begin >= row.size()) { continue; }
                 text += fmt::format("  {:<{}}", row[0], widths_[0]);
-                for (std::size_t i = begin; i < std::min(end, row.size()); ++i) { text += fmt::format("  {:>{}}", row[i], widths_[i]); }
+                for (std::size_t i = begin; i < std::min(end, row.size()); ++i) {
+                    text += fmt::format("  {:>{}}", row[i], widths_[i]);
+                }
                 text += "\n";
             }
         }

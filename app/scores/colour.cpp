@@ -23,7 +23,9 @@ const glm::mat3 kXyzFromLinear(makeXyzFromLinear());
 const glm::mat3 kLinearFromXyz(glm::inverse(makeXyzFromLinear()));
 const glm::vec3 kWhiteXyz(kWhite);
 
-float channelFromEncoded(float encoded) { return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f); }
+float channelFromEncoded(float encoded) {
+    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
 
 // The cube root, and below (6/29)^3 its tangent there.
 float compress(float share) {

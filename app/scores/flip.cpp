@@ -26,14 +26,17 @@ constexpr std::size_t kBlock = 65536;                             // pixels a th
 struct SensitivityTerm {
     double a, b;
 };
-constexpr SensitivityTerm kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053}, kBlueYellow{34.1, 0.04}, kBlueYellowNarrow{13.5, 0.025};
+constexpr SensitivityTerm kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053}, kBlueYellow{34.1, 0.04},
+    kBlueYellowNarrow{13.5, 0.025};
 
 double sigmaOf(const SensitivityTerm& term, double pixels_per_degree) {
     return pixels_per_degree * std::sqrt(term.b / (2.0 * std::numbers::pi * std::numbers::pi));
 }
 
 // All channels' filters reach to three sigma of the widest.
-int sensitivityRadius(double pixels_per_degree) { return static_cast<int>(std::ceil(3.0 * sigmaOf(kBlueYellow, pixels_per_degree))); }
+int sensitivityRadius(double pixels_per_degree) {
+    return static_cast<int>(std::ceil(3.0 * sigmaOf(kBlueYellow, pixels_per_degree)));
+}
 
 // The sum of a term's weights over the filter's square.
 double weightOf(const SensitivityTerm& term, double pixels_per_degree) {
@@ -49,7 +52,9 @@ Weights balance(const std::vector<double>& weights) {
     double above = 0.0, below = 0.0;
     for (const double weight : weights) { (weight > 0.0 ? above : below) += std::abs(weight); }
     Weights kernel;
-    for (const double weight : weights) { kernel.push_back(static_cast<float>(weight / (weight > 0.0 ? above : below))); }
+    for (const double weight : weights) {
+        kernel.push_back(static_cast<float>(weight / (weight > 0.0 ? above : below)));
+    }
     return kernel;
 }
 
@@ -159,10 +164,12 @@ Seen see(const Image& image, double pixels_per_degree, int threads) {
     seen.points = magnitudeOf(grey, kernels.point, kernels.smooth, threads);
 
     const auto blur = [&](const Plane& plane, const SensitivityTerm& term) {
-        const Weights kernel = gaussianKernel(sigmaOf(term, pixels_per_degree), sensitivityRadius(pixels_per_degree));
+        const Weights kernel =
+            gaussianKernel(sigmaOf(term, pixels_per_degree), sensitivityRadius(pixels_per_degree));
         return filterPlane(plane, kernel, kernel, Border::kClamp, threads);
     };
-    const double wide = weightOf(kBlueYellow, pixels_per_degree), narrow = weightOf(kBlueYellowNarrow, pixels_per_degree);
+    const double wide = weightOf(kBlueYellow, pixels_per_degree),
+                 narrow = weightOf(kBlueYellowNarrow, pixels_per_degree);
     const float share = static_cast<float>(wide / (wide + narrow));
     const Plane blue_narrow = blur(planes[2], kBlueYellowNarrow);
     planes = {blur(planes[0], kAchromatic), blur(planes[1], kRedGreen), blur(planes[2], kBlueYellow)};
@@ -185,17 +192,20 @@ float flipColourDifference(const glm::vec3& linear_a, const glm::vec3& linear_b)
 PixelScores flip(const Image& a, const Image& b, double pixels_per_degree, int threads) {
     requireComparable(a, b);
     check(pixels_per_degree >= kFlipLeastPixelsPerDegree && pixels_per_degree <= kFlipMostPixelsPerDegree,
-          "FLIP: pixels per degree is {}, must be from {} to {}", pixels_per_degree, kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree);
+          "FLIP: pixels per degree is {}, must be from {} to {}", pixels_per_degree,
+          kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree);
     const Seen seen_a = see(a, pixels_per_degree, threads), seen_b = see(b, pixels_per_degree, threads);
     const float largest = largestDifference();
     PixelScores scores{a.size_px, std::vector<float>(a.pixelCount())};
     forPixels(a.pixelCount(), threads, [&](std::size_t pixel) {
         glm::vec3 unused;
         const bool finite = readRgb(a, pixel, unused) && readRgb(b, pixel, unused);
-        const float colour = colourScore(hyabPower(pixelOf(seen_a.lab, pixel), pixelOf(seen_b.lab, pixel)), largest);
+        const float colour =
+            colourScore(hyabPower(pixelOf(seen_a.lab, pixel), pixelOf(seen_b.lab, pixel)), largest);
         const float edge = std::abs(seen_a.edges.values[pixel] - seen_b.edges.values[pixel]);
         const float point = std::abs(seen_a.points.values[pixel] - seen_b.points.values[pixel]);
-        const float feature = std::min(1.0f, std::pow(std::max(edge, point) / std::numbers::sqrt2_v<float>, kFeatureExponent));
+        const float feature =
+            std::min(1.0f, std::pow(std::max(edge, point) / std::numbers::sqrt2_v<float>, kFeatureExponent));
         scores.values[pixel] = finite ? std::pow(colour, 1.0f - feature) : 1.0f;
     });
     return scores;

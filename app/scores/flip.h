@@ -22,7 +22,8 @@ double pixelsPerDegree(double focal_px);
 // pixel with a value that is not finite in either picture scores 1, and its neighbours see that value as 0.
 // Throws Error if sizes differ, a picture has fewer than three channels, or pixels_per_degree is beyond these
 // limits.
-PixelScores flip(const Image& a, const Image& b, double pixels_per_degree = kFlipPixelsPerDegree, int threads = 2);
+PixelScores flip(const Image& a, const Image& b, double pixels_per_degree = kFlipPixelsPerDegree,
+                 int threads = 2);
 
 // The colour part of the score alone, for two colours that fill the picture: linear sRGB from 0 to 1.
 float flipColourDifference(const glm::vec3& linear_a, const glm::vec3& linear_b);

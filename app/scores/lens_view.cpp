@@ -64,10 +64,12 @@ void LensView::coverPictures(const std::array<Eye, 2>& eyes) {
         const glm::dmat3 grid_from_eye = glm::transpose(views_[side].eye_from_grid);
         const Intrinsics& lens = eyes[side].intrinsics;
         const auto reach = [&](double x, double y) {
-            const glm::dvec3 direction = grid_from_eye * glm::dvec3((x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy, 1.0);
+            const glm::dvec3 direction =
+                grid_from_eye * glm::dvec3((x - lens.cx) / lens.fx, (y - lens.cy) / lens.fy, 1.0);
             const double across = std::hypot(direction.x, direction.y);
             const double angle_px = std::atan2(across, direction.z) / pixel_rad_;
-            const glm::dvec2 place = across > 0.0 ? angle_px / across * glm::dvec2(direction) : glm::dvec2(0.0);
+            const glm::dvec2 place =
+                across > 0.0 ? angle_px / across * glm::dvec2(direction) : glm::dvec2(0.0);
             least = glm::min(least, place);
             most = glm::max(most, place);
         };
@@ -85,7 +87,8 @@ glm::dvec3 LensView::directionAt(const glm::dvec2& place_px, int side) const {
     const glm::dvec2 from_middle = place_px - middle_px_;
     const double distance = glm::length(from_middle), angle = distance * pixel_rad_;
     const double across = distance > 0.0 ? std::sin(angle) / distance : 0.0;
-    return views_[static_cast<std::size_t>(side)].eye_from_grid * glm::dvec3(across * from_middle, std::cos(angle));
+    return views_[static_cast<std::size_t>(side)].eye_from_grid *
+           glm::dvec3(across * from_middle, std::cos(angle));
 }
 
 double LensView::solidAngleAt(const glm::dvec2& place_px) const {
@@ -99,7 +102,8 @@ void LensView::lookUp(const Eye& eye, int side) {
     for (unsigned y = 0; y <= size_px_.y; ++y) {
         for (unsigned x = 0; x <= size_px_.x; ++x) {
             const glm::dvec3 direction = directionAt({x, y}, side);
-            view.corners_px.emplace_back(direction.z > 0.0 ? glm::vec2(placeOf(eye.intrinsics, direction)) : glm::vec2(kBehind));
+            view.corners_px.emplace_back(direction.z > 0.0 ? glm::vec2(placeOf(eye.intrinsics, direction))
+                                                           : glm::vec2(kBehind));
         }
     }
     const unsigned row_tiles = (view.size_px.x + gpu::kTileSize - 1) / gpu::kTileSize;
@@ -110,7 +114,8 @@ void LensView::lookUp(const Eye& eye, int side) {
     for (unsigned y = 0; y < size_px_.y; ++y) {
         for (unsigned x = 0; x < size_px_.x; ++x) {
             const glm::vec2* first = &view.corners_px[y * row + x];
-            if (!isInside(first[0]) || !isInside(first[1]) || !isInside(first[row]) || !isInside(first[row + 1])) {
+            if (!isInside(first[0]) || !isInside(first[1]) || !isInside(first[row]) ||
+                !isInside(first[row + 1])) {
                 view.tiles.push_back(kNowhere);
                 continue;
             }
@@ -123,8 +128,9 @@ void LensView::lookUp(const Eye& eye, int side) {
 
 Image LensView::show(const Image& picture, int side) const {
     const View& view = views_[static_cast<std::size_t>(side)];
-    check(picture.size_px == view.size_px && picture.channels >= 3, "a picture of {}x{} is not what the lens shows, must be {}x{}",
-          picture.size_px.x, picture.size_px.y, view.size_px.x, view.size_px.y);
+    check(picture.size_px == view.size_px && picture.channels >= 3,
+          "a picture of {}x{} is not what the lens shows, must be {}x{}", picture.size_px.x,
+          picture.size_px.y, view.size_px.x, view.size_px.y);
     Image shown{size_px_, 3, std::vector<float>(3 * view.tiles.size(), 0.0f)};
     const std::size_t row = size_px_.x + 1, channels = static_cast<std::size_t>(picture.channels);
     for (std::size_t pixel = 0; pixel < view.tiles.size(); ++pixel) {
@@ -134,12 +140,15 @@ Image LensView::show(const Image& picture, int side) const {
         for (unsigned place = 0; place < kPlaces * kPlaces; ++place) {
             const float right = (static_cast<float>(place % kPlaces) + 0.5f) / kPlaces,
                         down = (static_cast<float>(place / kPlaces) + 0.5f) / kPlaces;
-            const glm::vec2 at_px = glm::mix(glm::mix(first[0], first[1], right), glm::mix(first[row], first[row + 1], right), down);
+            const glm::vec2 at_px = glm::mix(glm::mix(first[0], first[1], right),
+                                             glm::mix(first[row], first[row + 1], right), down);
             const glm::uvec2 at = glm::min(glm::uvec2(at_px), view.size_px - 1u);
             const float* rgb = &picture.values[(std::size_t{at.y} * view.size_px.x + at.x) * channels];
             sum += glm::vec3(rgb[0], rgb[1], rgb[2]);
         }
-        for (int c = 0; c < 3; ++c) { shown.values[3 * pixel + static_cast<std::size_t>(c)] = sum[c] / (kPlaces * kPlaces); }
+        for (int c = 0; c < 3; ++c) {
+            shown.values[3 * pixel + static_cast<std::size_t>(c)] = sum[c] / (kPlaces * kPlaces);
+        }
     }
     return shown;
 }

@@ -33,7 +33,9 @@ public:
     [[nodiscard]] double solidAngleAt(const glm::dvec2& place_px) const;
     // By the grid's pixels: the tile of the eye's own picture at their centres, by rows; kNowhere if they are
     // not wholly in it.
-    [[nodiscard]] const std::vector<std::uint32_t>& tilesOf(int side) const { return views_[static_cast<std::size_t>(side)].tiles; }
+    [[nodiscard]] const std::vector<std::uint32_t>& tilesOf(int side) const {
+        return views_[static_cast<std::size_t>(side)].tiles;
+    }
     static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
     // A picture of an eye of the size that it was made for, on the grid: R, G and B, 0 where there is no

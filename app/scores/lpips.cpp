@@ -20,8 +20,8 @@ namespace binosplat {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "weights are read as they lie in the file");
-static_assert(Lpips::kValues ==
-              std::accumulate(SqueezeNet::kStageChannels.begin(), SqueezeNet::kStageChannels.end(), SqueezeNet::kWeights));
+static_assert(Lpips::kValues == std::accumulate(SqueezeNet::kStageChannels.begin(),
+                                                SqueezeNet::kStageChannels.end(), SqueezeNet::kWeights));
 
 constexpr std::array<float, 3> kMean{-0.030f, -0.088f, -0.188f}, kDeviation{0.458f, 0.448f, 0.450f};
 constexpr double kLeastLength = 1e-10;  // keeps a pixel without any feature from a division by zero
@@ -30,10 +30,11 @@ std::vector<float> readWeights(const std::filesystem::path& file) {
     constexpr std::size_t kBytes = Lpips::kValues * sizeof(float);
     std::error_code trouble;
     const std::uintmax_t bytes = std::filesystem::file_size(file, trouble);
-    check(!trouble, "{}: cannot be read ({}), must be the weights of LPIPS (SqueezeNet variant, version 0.1)", file.string(),
-          trouble.message());
-    check(bytes == kBytes, "{}: has {} bytes, must have the {} of the weights of LPIPS (SqueezeNet variant, version 0.1)", file.string(),
-          bytes, kBytes);
+    check(!trouble, "{}: cannot be read ({}), must be the weights of LPIPS (SqueezeNet variant, version 0.1)",
+          file.string(), trouble.message());
+    check(bytes == kBytes,
+          "{}: has {} bytes, must have the {} of the weights of LPIPS (SqueezeNet variant, version 0.1)",
+          file.string(), bytes, kBytes);
     std::vector<float> values(Lpips::kValues);
     std::ifstream stream(file, std::ios::binary);
     stream.read(reinterpret_cast<char*>(values.data()), kBytes);
@@ -42,7 +43,8 @@ std::vector<float> readWeights(const std::filesystem::path& file) {
         check(std::isfinite(values[i]), "{}: value {} is {}, must be finite", file.string(), i, values[i]);
     }
     for (std::size_t i = SqueezeNet::kWeights; i < values.size(); ++i) {
-        check(values[i] >= 0.0f, "{}: value {} is {}, must not be negative, as it belongs to a head", file.string(), i, values[i]);
+        check(values[i] >= 0.0f, "{}: value {} is {}, must not be negative, as it belongs to a head",
+              file.string(), i, values[i]);
     }
     return values;
 }
@@ -50,7 +52,9 @@ std::vector<float> readWeights(const std::filesystem::path& file) {
 // The factor that gives a pixel's features length 1.
 double scaleOf(const float* features, std::size_t channels) {
     double squares = 0.0;
-    for (std::size_t i = 0; i < channels; ++i) { squares += static_cast<double>(features[i]) * static_cast<double>(features[i]); }
+    for (std::size_t i = 0; i < channels; ++i) {
+        squares += static_cast<double>(features[i]) * static_cast<double>(features[i]);
+    }
     return 1.0 / (std::sqrt(squares) + kLeastLength);
 }
 
@@ -64,7 +68,8 @@ double compareFeatures(const Image& a, const Image& b, const std::vector<float>&
             const float* of_b = b.values.data() + (y * width + x) * channels;
             const double scale_a = scaleOf(of_a, channels), scale_b = scaleOf(of_b, channels);
             for (std::size_t i = 0; i < channels; ++i) {
-                const double difference = scale_a * static_cast<double>(of_a[i]) - scale_b * static_cast<double>(of_b[i]);
+                const double difference =
+                    scale_a * static_cast<double>(of_a[i]) - scale_b * static_cast<double>(of_b[i]);
                 rows[y] += static_cast<double>(head[i]) * difference * difference;
             }
         }
@@ -109,8 +114,9 @@ Lpips::Lpips(const std::vector<float>& values, const std::string& file)
 
 double Lpips::measure(const Image& a, const Image& b, int threads) const {
     requireComparable(a, b);
-    check(std::min(a.size_px.x, a.size_px.y) >= kLpipsLeastSide_px, "LPIPS: pictures have {}x{} pixels, must have at least {} a side",
-          a.size_px.x, a.size_px.y, kLpipsLeastSide_px);
+    check(std::min(a.size_px.x, a.size_px.y) >= kLpipsLeastSide_px,
+          "LPIPS: pictures have {}x{} pixels, must have at least {} a side", a.size_px.x, a.size_px.y,
+          kLpipsLeastSide_px);
     if (!isFinitePicture(a) || !isFinitePicture(b)) { return std::numeric_limits<double>::infinity(); }
     Image of_a = scaleForNetwork(a), of_b = scaleForNetwork(b);
     double distance = 0.0;
@@ -120,7 +126,9 @@ double Lpips::measure(const Image& a, const Image& b, int threads) const {
         distance += compareFeatures(of_a, of_b, heads_[stage], threads);
     }
     check(std::isfinite(distance),
-          "{}: leads to values that are not finite, must be the weights of LPIPS (SqueezeNet variant, version 0.1)", file_);
+          "{}: leads to values that are not finite, must be the weights of LPIPS (SqueezeNet variant, "
+          "version 0.1)",
+          file_);
     return distance;
 }
 

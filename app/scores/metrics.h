@@ -23,7 +23,9 @@ struct Difference {
     // Against a peak of 1: infinity for equal pictures, -infinity where a value is not finite.
     [[nodiscard]] double psnrDb() const;
     // Share of the values that are off, 0 to 1.
-    [[nodiscard]] double shareOff() const { return values > 0 ? static_cast<double>(off) / static_cast<double>(values) : 0.0; }
+    [[nodiscard]] double shareOff() const {
+        return values > 0 ? static_cast<double>(off) / static_cast<double>(values) : 0.0;
+    }
 };
 
 // Compares the first `channels` channels of each pixel as they are: nothing is clamped or rounded.

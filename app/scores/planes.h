@@ -45,7 +45,8 @@ struct PixelScores {
     [[nodiscard]] std::optional<double> mean() const;
     // Over the pixels whose class (one per pixel, such as pixelOrigins gives) is `chosen`; nothing where
     // there are none. Throws Error if there are not as many classes as pixels.
-    [[nodiscard]] std::optional<double> meanWhere(std::span<const std::uint8_t> classes, std::uint8_t chosen) const;
+    [[nodiscard]] std::optional<double> meanWhere(std::span<const std::uint8_t> classes,
+                                                  std::uint8_t chosen) const;
 };
 
 // Throws Error unless both pictures have the same size and three channels or more.

@@ -21,7 +21,9 @@ struct Sample {
 
 float cubicWeight(float x) {
     x = std::abs(x);
-    return x < 1.0f ? (1.5f * x - 2.5f) * x * x + 1.0f : x < 2.0f ? ((-0.5f * x + 2.5f) * x - 4.0f) * x + 2.0f : 0.0f;
+    return x < 1.0f   ? (1.5f * x - 2.5f) * x * x + 1.0f
+           : x < 2.0f ? ((-0.5f * x + 2.5f) * x - 4.0f) * x + 2.0f
+                      : 0.0f;
 }
 
 std::vector<Sample> samplesOf(std::uint32_t from, std::uint32_t to) {
@@ -46,7 +48,8 @@ std::vector<Sample> samplesOf(std::uint32_t from, std::uint32_t to) {
 
 Image scaleUp(const Image& picture, glm::uvec2 size_px) {
     const glm::uvec2 own = picture.size_px;
-    check(size_px.x >= own.x && size_px.y >= own.y, "a picture of {}x{} cannot be scaled up to {}x{}", own.x, own.y, size_px.x, size_px.y);
+    check(size_px.x >= own.x && size_px.y >= own.y, "a picture of {}x{} cannot be scaled up to {}x{}", own.x,
+          own.y, size_px.x, size_px.y);
     const auto channels = static_cast<std::size_t>(picture.channels);
     const std::vector<Sample> across = samplesOf(own.x, size_px.x), down = samplesOf(own.y, size_px.y);
     Image wide{{size_px.x, own.y}, picture.channels, {}}, scaled{size_px, picture.channels, {}};

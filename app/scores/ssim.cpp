@@ -17,7 +17,9 @@ constexpr int kRadius_px = 5;
 Plane channelOf(const Image& image, int channel) {
     Plane plane{image.size_px, std::vector<float>(image.pixelCount())};
     for (std::size_t pixel = 0; pixel < plane.values.size(); ++pixel) {
-        const float value = image.values[pixel * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(channel)];
+        const float value =
+            image
+                .values[pixel * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(channel)];
         plane.values[pixel] = std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f;
     }
     return plane;
@@ -25,7 +27,8 @@ Plane channelOf(const Image& image, int channel) {
 
 Plane product(const Plane& a, const Plane& b) {
     Plane result{a.size_px, std::vector<float>(a.values.size())};
-    std::transform(a.values.begin(), a.values.end(), b.values.begin(), result.values.begin(), [](float x, float y) { return x * y; });
+    std::transform(a.values.begin(), a.values.end(), b.values.begin(), result.values.begin(),
+                   [](float x, float y) { return x * y; });
     return result;
 }
 
@@ -45,13 +48,17 @@ PixelScores ssim(const Image& a, const Image& b, Border border, int threads) {
     for (int channel = 0; channel < 3; ++channel) {
         const Plane of_a = channelOf(a, channel), of_b = channelOf(b, channel);
         const Plane mean_a = blur(of_a), mean_b = blur(of_b);
-        const Plane mean_aa = blur(product(of_a, of_a)), mean_bb = blur(product(of_b, of_b)), mean_ab = blur(product(of_a, of_b));
+        const Plane mean_aa = blur(product(of_a, of_a)), mean_bb = blur(product(of_b, of_b)),
+                    mean_ab = blur(product(of_a, of_b));
         for (std::size_t i = 0; i < scores.values.size(); ++i) {
             const float mu_a = mean_a.values[i], mu_b = mean_b.values[i];
-            const float variance_a = mean_aa.values[i] - mu_a * mu_a, variance_b = mean_bb.values[i] - mu_b * mu_b;
+            const float variance_a = mean_aa.values[i] - mu_a * mu_a,
+                        variance_b = mean_bb.values[i] - mu_b * mu_b;
             const float covariance = mean_ab.values[i] - mu_a * mu_b;
-            const float above = (2.0f * mu_a * mu_b + kStabilizeMean) * (2.0f * covariance + kStabilizeVariance);
-            const float below = (mu_a * mu_a + mu_b * mu_b + kStabilizeMean) * (variance_a + variance_b + kStabilizeVariance);
+            const float above =
+                (2.0f * mu_a * mu_b + kStabilizeMean) * (2.0f * covariance + kStabilizeVariance);
+            const float below =
+                (mu_a * mu_a + mu_b * mu_b + kStabilizeMean) * (variance_a + variance_b + kStabilizeVariance);
             scores.values[i] += above / below / 3.0f;
         }
     }

@@ -37,7 +37,8 @@ float shown(float value) { return std::round(255.0f * std::clamp(value, 0.0f, 1.
 
 // One eye's picture or full render as shown: its luma.
 struct Luma {
-    explicit Luma(const Image& image) : width(image.size_px.x), height(image.size_px.y), values(image.pixelCount()) {
+    explicit Luma(const Image& image)
+        : width(image.size_px.x), height(image.size_px.y), values(image.pixelCount()) {
         for (std::size_t i = 0; i < values.size(); ++i) {
             const float* rgb = &image.values[3 * i];
             values[i] = 0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2];
@@ -57,7 +58,8 @@ struct Luma {
 // One eye's sight or, without one, the whole rendered picture as it is.
 class SeenPixels {
 public:
-    SeenPixels(glm::uvec2 size_px, const Sight* sight) : width_(size_px.x), row_tiles_((size_px.x + kTile - 1) / kTile), sight_(sight) {}
+    SeenPixels(glm::uvec2 size_px, const Sight* sight)
+        : width_(size_px.x), row_tiles_((size_px.x + kTile - 1) / kTile), sight_(sight) {}
 
     [[nodiscard]] bool isShown(std::size_t x, std::size_t y) const {
         return sight_ == nullptr || sight_->rendered_tiles[y * width_ + x] != Sight::kNoTile;
@@ -66,8 +68,8 @@ public:
     [[nodiscard]] bool isShownAround(std::size_t x, std::size_t y) const {
         if (sight_ == nullptr) { return true; }
         const std::size_t height = sight_->rendered_tiles.size() / width_;
-        return isShown(x, y) && (x == 0 || isShown(x - 1, y)) && (x + 1 == width_ || isShown(x + 1, y)) && (y == 0 || isShown(x, y - 1)) &&
-               (y + 1 == height || isShown(x, y + 1));
+        return isShown(x, y) && (x == 0 || isShown(x - 1, y)) && (x + 1 == width_ || isShown(x + 1, y)) &&
+               (y == 0 || isShown(x, y - 1)) && (y + 1 == height || isShown(x, y + 1));
     }
     [[nodiscard]] bool isTileShown(std::size_t tile_x, std::size_t tile_y) const {
         bool all = true;
@@ -81,7 +83,9 @@ public:
         return sight_ == nullptr ? 1.0 : sight_->shares[tile_y * row_tiles_ + tile_x];
     }
     // Of an error at this pixel.
-    [[nodiscard]] double amplitude(std::size_t x, std::size_t y) const { return std::sqrt(shareOfTile(x / kTile, y / kTile)); }
+    [[nodiscard]] double amplitude(std::size_t x, std::size_t y) const {
+        return std::sqrt(shareOfTile(x / kTile, y / kTile));
+    }
     // True if different rendered tiles meet between a pixel and the one to its right, or the one below it.
     [[nodiscard]] bool isBorder(std::size_t x, std::size_t y, bool down) const {
         if (sight_ == nullptr) { return (down ? y : x) % kTile == kTile - 1; }
@@ -153,10 +157,13 @@ double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
         std::vector<Sums> places(seen.placeCount(full.height));
         for (std::size_t y = 0; y + (down ? 1 : 0) < full.height; ++y) {
             for (std::size_t x = 0; x + (down ? 0 : 1) < full.width; ++x) {
-                if (!seen.isShown(x, y) || !seen.isShown(x + (down ? 0 : 1), y + (down ? 1 : 0))) { continue; }
+                if (!seen.isShown(x, y) || !seen.isShown(x + (down ? 0 : 1), y + (down ? 1 : 0))) {
+                    continue;
+                }
                 const std::size_t from = y * full.width + x, at = from + stride;
                 const bool across = seen.isBorder(x, y, down);
-                const float step = std::abs((picture.values[at] - picture.values[from]) - (full.values[at] - full.values[from]));
+                const float step = std::abs((picture.values[at] - picture.values[from]) -
+                                            (full.values[at] - full.values[from]));
                 Sums& here = places[seen.placeOf(x, y)];
                 (across ? here.across : here.within) += seen.amplitude(x, y) * static_cast<double>(step);
                 ++(across ? here.across_count : here.within_count);
@@ -164,7 +171,8 @@ double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
         }
         std::erase_if(places, [](const Sums& one) { return one.within_count == 0 || one.across_count == 0; });
         for (const Sums& one : places) {
-            const double more = one.across / static_cast<double>(one.across_count) - one.within / static_cast<double>(one.within_count);
+            const double more = one.across / static_cast<double>(one.across_count) -
+                                one.within / static_cast<double>(one.within_count);
             mean += 0.5 * more / static_cast<double>(places.size());
         }
     }
@@ -172,7 +180,8 @@ double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
 }
 
 // By tiles: by how many octaves the picture is sharper than its full render; empty if that has no texture.
-std::vector<std::optional<double>> sharpnessOf(const Luma& picture, const Luma& full, const SeenPixels& seen) {
+std::vector<std::optional<double>> sharpnessOf(const Luma& picture, const Luma& full,
+                                               const SeenPixels& seen) {
     std::vector<std::optional<double>> sharpness;
     for (std::size_t tile_y = 0; (tile_y + 1) * kTile <= full.height; ++tile_y) {
         for (std::size_t tile_x = 0; (tile_x + 1) * kTile <= full.width; ++tile_x) {
@@ -186,7 +195,9 @@ std::vector<std::optional<double>> sharpnessOf(const Luma& picture, const Luma& 
             own /= kTile * kTile;
             there /= kTile * kTile;
             const bool has_texture = there > kTexture && seen.isTileShown(tile_x, tile_y);
-            sharpness.push_back(has_texture ? std::optional(0.5 * std::log2((own + kNoTexture) / (there + kNoTexture))) : std::nullopt);
+            sharpness.push_back(
+                has_texture ? std::optional(0.5 * std::log2((own + kNoTexture) / (there + kNoTexture)))
+                            : std::nullopt);
         }
     }
     return sharpness;
@@ -202,7 +213,8 @@ double deviation(const std::vector<double>& values) {
 }
 
 // Pictures as shown.
-VisibleErrors findErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full, const std::array<Sight, 2>* sights) {
+VisibleErrors findErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full,
+                         const std::array<Sight, 2>* sights) {
     VisibleErrors found;
     std::array<std::vector<std::optional<double>>, 2> sharpness;
     std::array<std::optional<SeenPixels>, 2> seen;
@@ -219,7 +231,9 @@ VisibleErrors findErrors(const std::array<Image, 2>& pictures, const std::array<
     for (std::size_t tile = 0; tile < std::min(sharpness[0].size(), sharpness[1].size()); ++tile) {
         const auto left = sharpness[0][tile], right = sharpness[1][tile];
         if (!left || !right) { continue; }
-        const auto shareOf = [&](const SeenPixels& by) { return by.shareOfTile(tile % row_tiles, tile / row_tiles); };
+        const auto shareOf = [&](const SeenPixels& by) {
+            return by.shareOfTile(tile % row_tiles, tile / row_tiles);
+        };
         differences.push_back(std::sqrt(std::min(shareOf(*seen[0]), shareOf(*seen[1]))) * (*left - *right));
     }
     found.rival = deviation(differences);
@@ -230,7 +244,8 @@ VisibleErrors findErrors(const std::array<Image, 2>& pictures, const std::array<
 
 double VisibleErrors::badShare() const {
     if (tile_squares.empty()) { return 0.0; }
-    const auto bad = std::ranges::count_if(tile_squares, [](float square) { return static_cast<double>(square) > kBadTileSquare; });
+    const auto bad = std::ranges::count_if(
+        tile_squares, [](float square) { return static_cast<double>(square) > kBadTileSquare; });
     return static_cast<double>(bad) / static_cast<double>(tile_squares.size());
 }
 
@@ -246,24 +261,30 @@ Image asShown(const Image& picture) {
 
 VisibleErrors findVisibleErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full) {
     for (std::size_t eye = 0; eye < 2; ++eye) { requireComparable(pictures[eye], full[eye]); }
-    return findErrors({asShown(pictures[kLeft]), asShown(pictures[kRight])}, {asShown(full[kLeft]), asShown(full[kRight])}, nullptr);
+    return findErrors({asShown(pictures[kLeft]), asShown(pictures[kRight])},
+                      {asShown(full[kLeft]), asShown(full[kRight])}, nullptr);
 }
 
-VisibleErrors findSeenErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full, const std::array<Sight, 2>& sights) {
+VisibleErrors findSeenErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full,
+                             const std::array<Sight, 2>& sights) {
     for (std::size_t eye = 0; eye < 2; ++eye) {
         requireComparable(pictures[eye], full[eye]);
-        const glm::uvec2 size_px = full[eye].size_px, tiles = (size_px + static_cast<unsigned>(kTile) - 1u) / static_cast<unsigned>(kTile);
-        check(pictures[eye].channels == 3 && full[eye].channels == 3 && sights[eye].rendered_tiles.size() == full[eye].pixelCount() &&
+        const glm::uvec2 size_px = full[eye].size_px,
+                         tiles = (size_px + static_cast<unsigned>(kTile) - 1u) / static_cast<unsigned>(kTile);
+        check(pictures[eye].channels == 3 && full[eye].channels == 3 &&
+                  sights[eye].rendered_tiles.size() == full[eye].pixelCount() &&
                   sights[eye].shares.size() == std::size_t{tiles.x} * tiles.y,
-              "what an eye sees of a picture of {}x{} needs three channels, a tile for each pixel and a share for each tile", size_px.x,
-              size_px.y);
+              "what an eye sees of a picture of {}x{} needs three channels, a tile for each pixel and a "
+              "share for each tile",
+              size_px.x, size_px.y);
     }
     return findErrors(pictures, full, &sights);
 }
 
 double worstTiles(std::vector<float> tile_squares, double share) {
     if (tile_squares.empty()) { return 0.0; }
-    const std::size_t count = std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(tile_squares.size())));
+    const std::size_t count =
+        std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(tile_squares.size())));
     const auto end = tile_squares.begin() + static_cast<std::ptrdiff_t>(count);
     std::nth_element(tile_squares.begin(), end - 1, tile_squares.end(), std::greater());
     return std::accumulate(tile_squares.begin(), end, 0.0) / static_cast<double>(count);

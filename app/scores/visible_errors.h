@@ -52,7 +52,8 @@ struct Sight {
 // with pixels that show nothing are left out, and so are such pixels. `seam` is across the borders of the
 // rendered tiles, compared within each tile of this picture. Pictures are as shown (asShown), and not rounded
 // again.
-VisibleErrors findSeenErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full, const std::array<Sight, 2>& sights);
+VisibleErrors findSeenErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full,
+                             const std::array<Sight, 2>& sights);
 
 // The mean square of this share of tiles, the worst ones, at least one; 0 if there are none.
 double worstTiles(std::vector<float> tile_squares, double share);

@@ -11,7 +11,8 @@ std::vector<Family> makeDiscFamilies() {
          makeEdgeOn,
          {50.0, 0.001},
          kPlaces,
-         "the sine between disc and line of sight is a difference of numbers as large as its centre's, off by 1e-7: at 1e-7 rad nothing of "
+         "the sine between disc and line of sight is a difference of numbers as large as its centre's, off "
+         "by 1e-7: at 1e-7 rad nothing of "
          "it is left"},
         {"edge-on along a row of pixel centres",
          "angle, rad",
@@ -19,7 +20,8 @@ std::vector<Family> makeDiscFamilies() {
          makeHorizon,
          {50.0, 0.001},
          kPlaces,
-         "likewise; under 1e-6 rad the disc is thinner than the error of a pixel's distance from its line: one row of pixels is the "
+         "likewise; under 1e-6 rad the disc is thinner than the error of a pixel's distance from its line: "
+         "one row of pixels is the "
          "low-pass where the twin has the disc",
          {25.0, 0.03, kInfinity, 0.3},
          1e-6},
@@ -36,14 +38,16 @@ std::vector<Family> makeDiscFamilies() {
          makeScales,
          kRounding,
          kPlaces,
-         "specks are only their low-pass; discs around the eye are cut by the near plane, at a place subject to rounding"},
+         "specks are only their low-pass; discs around the eye are cut by the near plane, at a place subject "
+         "to rounding"},
         {"disc through the eye",
          "distance of its plane, scene units",
          {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1},
          makeThroughEye,
          {50.0, 0.001},
          kPlacesOfCut,
-         "the plane passes both eyes this closely: its part beyond the near plane is seen edge-on; which tiles are rendered again "
+         "the plane passes both eyes this closely: its part beyond the near plane is seen edge-on; which "
+         "tiles are rendered again "
          "depends on bounds that differ for discs cut by that plane"},
         {"depth ratio",
          "farthest over nearest",
@@ -58,7 +62,8 @@ std::vector<Family> makeDiscFamilies() {
          makeUnit,
          kRounding,
          kPlaces,
-         "exponents of float32 end at 1e-38 and 1e38: products of three lengths must fit, and the square of a spread of depths",
+         "exponents of float32 end at 1e-38 and 1e38: products of three lengths must fit, and the square of "
+         "a spread of depths",
          {30.0, 0.02, kInfinity, 0.5},
          1e-13,
          1e13},
@@ -68,7 +73,8 @@ std::vector<Family> makeDiscFamilies() {
          makeFarOff,
          kRounding,
          kPlaces,
-         "positions are subtracted from the eye's in 48 bits, so only what the file's own float32 lost is lost"},
+         "positions are subtracted from the eye's in 48 bits, so only what the file's own float32 lost is "
+         "lost"},
         {"two places",
          "distance, scene units",
          {1.0, 1e2, 1e3, 1e4, 1e5, 1e6},
@@ -89,14 +95,16 @@ std::vector<Family> makeDiscFamilies() {
          makeLayers,
          {80.0, 0.0, 1e-4},
          kPlaces,
-         "each layer rounds the transmittance by 6e-8 of itself, 1000 of them by 2e-6 if they add up at random and 6e-5 if not"},
+         "each layer rounds the transmittance by 6e-8 of itself, 1000 of them by 2e-6 if they add up at "
+         "random and 6e-5 if not"},
         {"depths that are almost equal",
          "difference over depth",
          {0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3},
          makeSeparation,
          kRounding,
          kPlaces,
-         "the order is that of the depths as float32: depths that differ by less than the last place may come in either order",
+         "the order is that of the depths as float32: depths that differ by less than the last place may "
+         "come in either order",
          {15.0, 1.0, kInfinity, 0.3},
          1e-7},
         {"quaternions",
@@ -121,14 +129,16 @@ std::vector<Family> makeDiscFamilies() {
          makeHarmonics,
          {50.0, 0.001},
          kPlaces,
-         "coefficients and colours are half floats, which end at 65504 and have relative errors of up to 2^-11"},
+         "coefficients and colours are half floats, which end at 65504 and have relative errors of up to "
+         "2^-11"},
         {"eye distance",
          "scene units",
          {0.0, 1e-6, 1e-4, 1e-2, 0.063, 0.25, 1.0},
          makeEyeDistance,
          kRounding,
          kPlaces,
-         "at 0 nothing moves, at 1e-6 everything by less than a pixel, and the device treats tiles with errors under 2^-20 as right "
+         "at 0 nothing moves, at 1e-6 everything by less than a pixel, and the device treats tiles with "
+         "errors under 2^-20 as right "
          "alone"},
         {"canting",
          "degrees",
@@ -143,7 +153,8 @@ std::vector<Family> makeDiscFamilies() {
          makeFieldOfView,
          kRounding,
          kPlaces,
-         "at 1 degree a pixel is 1e-4 of a unit disc; at 170 a pixel at the edge is 130 times as long as one in the middle"},
+         "at 1 degree a pixel is 1e-4 of a unit disc; at 170 a pixel at the edge is 130 times as long as one "
+         "in the middle"},
     };
 }
 

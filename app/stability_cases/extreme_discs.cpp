@@ -46,8 +46,9 @@ Stage makeHorizon(double angle_rad) {
     stage.addWall();
     Random random(3);
     for (int i = 0; i < 12; ++i) {
-        Disc disc{
-            .centre = {random.between(-0.8, 0.8), 0.0, random.between(1.0, 3.0)}, .scale = glm::dvec2(0.4), .colour = random.colour()};
+        Disc disc{.centre = {random.between(-0.8, 0.8), 0.0, random.between(1.0, 3.0)},
+                  .scale = glm::dvec2(0.4),
+                  .colour = random.colour()};
         layAlongSight(disc, angle_rad);
         stage.add(disc);
     }
@@ -55,7 +56,9 @@ Stage makeHorizon(double angle_rad) {
 }
 
 Stage makeNeedles(double aspect) {
-    return makeDiscs(60, 4, [&](Disc& disc, Random&) { disc.scale = 0.03 * glm::dvec2(std::sqrt(aspect), 1.0 / std::sqrt(aspect)); });
+    return makeDiscs(60, 4, [&](Disc& disc, Random&) {
+        disc.scale = 0.03 * glm::dvec2(std::sqrt(aspect), 1.0 / std::sqrt(aspect));
+    });
 }
 
 Stage makeScales(double scale) {
@@ -73,8 +76,8 @@ Stage makeThroughEye(double distance) {
         turnAnyhow(disc, random);
         const glm::dvec3 normal = glm::normalize(glm::cross(disc.t_u, disc.t_v));
         // The foot of the eye, and a centre up to 0.7 beside it within the plane.
-        const glm::dvec3 in_plane =
-            random.between(-0.5, 0.5) * glm::normalize(disc.t_u) + random.between(-0.5, 0.5) * glm::normalize(glm::cross(normal, disc.t_u));
+        const glm::dvec3 in_plane = random.between(-0.5, 0.5) * glm::normalize(disc.t_u) +
+                                    random.between(-0.5, 0.5) * glm::normalize(glm::cross(normal, disc.t_u));
         disc.centre = distance * normal + in_plane;
         disc.scale = glm::dvec2(random.between(0.3, 2.0));
         disc.opacity = random.between(0.2, 0.6);
@@ -114,7 +117,10 @@ Stage makeLayers(double count) {
     const int layers = static_cast<int>(count);
     for (int i = 0; i < layers; ++i) {
         const double depth = 1.0 + 2.0 * i / layers;
-        stage.add({.centre = {0.0, 0.0, depth}, .scale = glm::dvec2(50.0 * depth), .opacity = 0.01, .colour = random.colour()});
+        stage.add({.centre = {0.0, 0.0, depth},
+                   .scale = glm::dvec2(50.0 * depth),
+                   .opacity = 0.01,
+                   .colour = random.colour()});
     }
     return stage.finish();
 }
@@ -144,7 +150,9 @@ Stage makeBrokenAttributes(double value) {
         scene.rotations.push_back(scene.rotations[i]);
         scene.scales.push_back(scene.scales[i]);
         scene.opacities.push_back(scene.opacities[i]);
-        for (std::size_t channel = 0; channel < 3; ++channel) { scene.sh.push_back(scene.sh[3 * i + channel]); }
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            scene.sh.push_back(scene.sh[3 * i + channel]);
+        }
     };
     for (int axis = 0; axis < 3; ++axis) {
         copy();
@@ -181,7 +189,8 @@ Stage makeHarmonics(double amplitude) {
     Scene& scene = stage.scene;
     scene.sh_degree = kMaxShDegree;
     scene.sh.clear();
-    for (std::size_t i = 0; i < scene.size() * 3 * static_cast<std::size_t>(shCoefficientCount(kMaxShDegree)); ++i) {
+    for (std::size_t i = 0; i < scene.size() * 3 * static_cast<std::size_t>(shCoefficientCount(kMaxShDegree));
+         ++i) {
         scene.sh.push_back(static_cast<float>(amplitude * random.between(-1.0, 1.0)));
     }
     return stage;

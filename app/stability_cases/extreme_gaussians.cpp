@@ -36,11 +36,13 @@ Stage makeNeedlesAlongSight(double aspect) {
 }
 
 Stage makeNeedlesAcross(double aspect) {
-    return makeNeedlesAlong(aspect, [](const Disc&, int i) { return i % 2 == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0); });
+    return makeNeedlesAlong(
+        aspect, [](const Disc&, int i) { return i % 2 == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0); });
 }
 
 Stage makeNeedlesDiagonal(double aspect) {
-    return makeNeedlesAlong(aspect, [](const Disc&, int i) { return glm::normalize(glm::dvec3(1, i % 2 == 0 ? 1 : -1, 0)); });
+    return makeNeedlesAlong(
+        aspect, [](const Disc&, int i) { return glm::normalize(glm::dvec3(1, i % 2 == 0 ? 1 : -1, 0)); });
 }
 
 Stage makeSheetsEdgeOn(double angle_rad) {
@@ -115,7 +117,8 @@ Stage asGaussians(Stage stage) {
     for (const glm::vec2& scale : stage.scene.scales) {
         // A third of them sheets.
         const double share = std::max(random.between(-0.5, 1.0), 0.0);
-        stage.scene.thicknesses.push_back(static_cast<float>(share * static_cast<double>(std::min(scale.x, scale.y))));
+        stage.scene.thicknesses.push_back(
+            static_cast<float>(share * static_cast<double>(std::min(scale.x, scale.y))));
     }
     return stage;
 }

@@ -8,7 +8,8 @@
 namespace binosplat::stability {
 namespace {
 
-StageBuilder makeRoom(glm::uvec2 size_px = kSizePx, double fov_x_deg = 60.0, const glm::dvec3& position_world = {0.3, -0.2, 0.1}) {
+StageBuilder makeRoom(glm::uvec2 size_px = kSizePx, double fov_x_deg = 60.0,
+                      const glm::dvec3& position_world = {0.3, -0.2, 0.1}) {
     StageBuilder stage(size_px, fov_x_deg, position_world);
     stage.addWall();
     stage.addClutter(90, 21);
@@ -21,12 +22,16 @@ Stage makeUnit(double unit) {
     Stage stage = makeRoom().finish();
     for (glm::vec3& position : stage.scene.positions) { position = glm::vec3(glm::dvec3(position) * unit); }
     for (glm::vec2& scale : stage.scene.scales) { scale = glm::vec2(glm::dvec2(scale) * unit); }
-    for (Eye* eye : {&stage.middle, &stage.eyes[kLeft], &stage.eyes[kRight]}) { eye->world_from_camera.position *= unit; }
+    for (Eye* eye : {&stage.middle, &stage.eyes[kLeft], &stage.eyes[kRight]}) {
+        eye->world_from_camera.position *= unit;
+    }
     stage.near *= unit;
     return stage;
 }
 
-Stage makeFarOff(double offset) { return makeRoom(kSizePx, 60.0, glm::dvec3(0.3 + offset, -0.2 - offset, 0.1 + offset)).finish(); }
+Stage makeFarOff(double offset) {
+    return makeRoom(kSizePx, 60.0, glm::dvec3(0.3 + offset, -0.2 - offset, 0.1 + offset)).finish();
+}
 
 Stage makeTwoPlaces(double distance) {
     StageBuilder stage = makeRoom(kSizePx, 60.0, glm::dvec3(0.3 + distance, -0.2, 0.1 - distance));
@@ -75,7 +80,9 @@ Stage makeCovered() {
     StageBuilder stage;
     Random random(24);
     for (int i = 0; i < 100; ++i) {
-        Disc disc{.centre = {0.0, 0.0, random.between(1.0, 4.0)}, .scale = glm::dvec2(10.0), .opacity = random.between(0.05, 0.3)};
+        Disc disc{.centre = {0.0, 0.0, random.between(1.0, 4.0)},
+                  .scale = glm::dvec2(10.0),
+                  .opacity = random.between(0.05, 0.3)};
         disc.t_u = {1.0, 0.0, random.between(-0.3, 0.3)};
         disc.t_v = {0.0, 1.0, random.between(-0.3, 0.3)};
         disc.colour = random.colour();

@@ -49,14 +49,16 @@ std::vector<Family> makeGaussianFamilies() {
          makeSheetsEdgeOn,
          kRounding,
          kPlaces,
-         "a line as wide as the low-pass: the visible area does not matter while it is less than the length in pixels"},
+         "a line as wide as the low-pass: the visible area does not matter while it is less than the length "
+         "in pixels"},
         {"3D sheets at 1e-7 rad",
          "length, scene units",
          {1.0, 1e2, 1e4},
          makeLongSheets,
          {50.0, 0.005},
          kPlaces,
-         "from 1e5 pixels on the area that rounding sees of them counts beside the low-pass, and so does the depth it takes them to slope "
+         "from 1e5 pixels on the area that rounding sees of them counts beside the low-pass, and so does the "
+         "depth it takes them to slope "
          "by",
          {40.0, 0.05, kInfinity, 0.1},
          -kInfinity,
@@ -67,7 +69,8 @@ std::vector<Family> makeGaussianFamilies() {
          makeBeyondNear,
          kRounding,
          kPlaces,
-         "shown in full beyond the plane, not at all in front of it; the linear projection makes them as large as they are there"},
+         "shown in full beyond the plane, not at all in front of it; the linear projection makes them as "
+         "large as they are there"},
         {"3D beside the eye",
          "slope of their centres",
          {1.0, 3.0, 10.0, 100.0, 1e4},
@@ -147,7 +150,8 @@ std::vector<Family> makeGaussianFamilies() {
          makeThick<makeUnit>,
          kRounding,
          kPlaces,
-         "lengths are first multiplied by the focal length over the depth, so all later products are in pixels: no unit is too small or "
+         "lengths are first multiplied by the focal length over the depth, so all later products are in "
+         "pixels: no unit is too small or "
          "too large"},
         {"dimmed depth ratio",
          "farthest over nearest",
@@ -186,7 +190,13 @@ std::vector<Family> makeGaussianFamilies() {
          kRounding,
          kPlaces,
          "such a splat is not shown, whichever attribute is broken, including its thickness"},
-        {"3D eye distance", "scene units", {0.0, 1e-6, 1.0}, makeThick<makeEyeDistance>, kRounding, kPlaces, "as of discs"},
+        {"3D eye distance",
+         "scene units",
+         {0.0, 1e-6, 1.0},
+         makeThick<makeEyeDistance>,
+         kRounding,
+         kPlaces,
+         "as of discs"},
         {"3D canting", "degrees", {1e-3, 20.0}, makeThick<makeCanting>, kRounding, kPlaces, "as of discs"},
         {"dimmed field of view",
          "degrees",
@@ -201,15 +211,19 @@ std::vector<Family> makeGaussianFamilies() {
 void addGaussianCases(std::vector<Case>& cases) {
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33)}) {
         cases.push_back(standAlone(
-            fmt::format("3D image of {}x{}", size_px.x, size_px.y), [size_px] { return asGaussians(makeImage(size_px)); },
+            fmt::format("3D image of {}x{}", size_px.x, size_px.y),
+            [size_px] { return asGaussians(makeImage(size_px)); },
             "the border of the derivative is a share of the picture's size"));
     }
     cases.push_back(standAlone(
-        "3D equal depths", [] { return asGaussians(makeEqualDepths()); }, "ties are broken by the order of the scene"));
+        "3D equal depths", [] { return asGaussians(makeEqualDepths()); },
+        "ties are broken by the order of the scene"));
     cases.push_back(standAlone(
-        "3D every tile covered", [] { return asGaussians(makeCovered()); }, "a hundred 3D Gaussians meet every tile"));
+        "3D every tile covered", [] { return asGaussians(makeCovered()); },
+        "a hundred 3D Gaussians meet every tile"));
     cases.push_back(standAlone(
-        "3D eye inside a cloud", [] { return asGaussians(makeCloud()); }, "of all sizes, around the eye, its near plane and beside it"));
+        "3D eye inside a cloud", [] { return asGaussians(makeCloud()); },
+        "of all sizes, around the eye, its near plane and beside it"));
     cases.push_back(standAlone(
         "dimmed eye inside a cloud", [] { return asDimmed(makeCloud()); }, "likewise, with dimmed specks"));
 }

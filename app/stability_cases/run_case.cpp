@@ -20,11 +20,14 @@ public:
     explicit TwinPictures(const Stage& stage) : stage_(stage) { settings_.near = stage.near; }
 
     [[nodiscard]] const std::vector<glm::dvec4>& middle() { return full(2, stage_.middle); }
-    [[nodiscard]] const std::vector<glm::dvec4>& of(int eye) { return full(eye, stage_.eyes[static_cast<std::size_t>(eye)]); }
+    [[nodiscard]] const std::vector<glm::dvec4>& of(int eye) {
+        return full(eye, stage_.eyes[static_cast<std::size_t>(eye)]);
+    }
     [[nodiscard]] reference::StereoPictures moved(Mode mode) const {
         reference::StereoSettings stereo{.margin_px = kMarginPx, .center_rois = true};
         stereo.choice = choiceOf(mode);
-        return reference::renderStereo(stage_.scene, {stage_.eyes[kDominant], stage_.eyes[1 - kDominant]}, stereo, settings_);
+        return reference::renderStereo(stage_.scene, {stage_.eyes[kDominant], stage_.eyes[1 - kDominant]},
+                                       stereo, settings_);
     }
 
 private:
@@ -39,10 +42,12 @@ private:
     std::array<std::optional<std::vector<glm::dvec4>>, 3> full_;
 };
 
-void compareMoved(PictureScore& score, const Image& image, const std::vector<std::uint32_t>& kinds, const reference::StereoPictures& twin) {
+void compareMoved(PictureScore& score, const Image& image, const std::vector<std::uint32_t>& kinds,
+                  const reference::StereoPictures& twin) {
     std::vector<bool> alike;
     for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
-        alike.push_back(kinds.empty() || (kinds[t] != 0) == (twin.tile_kinds[t] != reference::TileKind::kNone));
+        alike.push_back(kinds.empty() ||
+                        (kinds[t] != 0) == (twin.tile_kinds[t] != reference::TileKind::kNone));
     }
     const auto others = std::ranges::count(alike, false);
     score.other_tiles = static_cast<double>(others) / static_cast<double>(alike.size());
@@ -59,11 +64,14 @@ FrameSettings settingsOf(Mode mode, double near) {
     return settings;
 }
 
-bool makesFromOther(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
+bool makesFromOther(Mode mode) {
+    return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted;
+}
 
 bool keeps(const PictureScore& score, const Bound& bound) {
-    return score.repeats && score.not_finite == 0 && score.psnr_db >= bound.psnr_db && score.share_off <= bound.share_off &&
-           score.largest <= bound.largest && score.other_tiles <= bound.other_tiles;
+    return score.repeats && score.not_finite == 0 && score.psnr_db >= bound.psnr_db &&
+           score.share_off <= bound.share_off && score.largest <= bound.largest &&
+           score.other_tiles <= bound.other_tiles;
 }
 
 struct Rendered {
@@ -73,26 +81,35 @@ struct Rendered {
 Rendered renderOnce(StereoFrame& frame, std::span<const Eye> eyes, const FrameSettings& settings) {
     frame.render(eyes, settings);
     Rendered rendered{{}, countNotFinite(frame.readDominantDepth())};
-    for (std::size_t e = 0; e < eyes.size(); ++e) { rendered.pictures.push_back(frame.readPicture(static_cast<int>(e))); }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        rendered.pictures.push_back(frame.readPicture(static_cast<int>(e)));
+    }
     return rendered;
 }
 
-void runMode(CaseScore& result, StereoFrame& frame, const Stage& stage, const Case& one, Mode mode, TwinPictures& twins) {
-    const std::span<const Eye> eyes = mode == Mode::kMono ? std::span<const Eye>(&stage.middle, 1) : std::span<const Eye>(stage.eyes);
+void runMode(CaseScore& result, StereoFrame& frame, const Stage& stage, const Case& one, Mode mode,
+             TwinPictures& twins) {
+    const std::span<const Eye> eyes =
+        mode == Mode::kMono ? std::span<const Eye>(&stage.middle, 1) : std::span<const Eye>(stage.eyes);
     const FrameSettings settings = settingsOf(mode, stage.near);
     const Rendered first = renderOnce(frame, eyes, settings);
     const std::vector<std::uint32_t> kinds = frame.readTileKinds();
     const Rendered second = renderOnce(frame, eyes, settings);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
-        PictureScore score{.mode = mode, .eye = mode == Mode::kMono ? "middle" : e == kLeft ? "left" : "right"};
+        PictureScore score{.mode = mode,
+                           .eye = mode == Mode::kMono ? "middle"
+                                  : e == kLeft        ? "left"
+                                                      : "right"};
         const Image& picture = first.pictures[e];
         score.moved = makesFromOther(mode) && e != kDominant;
         score.not_finite = countNotFinite(picture) + (score.moved ? 0 : first.depths_not_finite);
-        score.repeats = second.pictures[e].values == picture.values && second.depths_not_finite == first.depths_not_finite;
+        score.repeats = second.pictures[e].values == picture.values &&
+                        second.depths_not_finite == first.depths_not_finite;
         if (score.moved) {
             compareMoved(score, picture, kinds, twins.moved(mode));
         } else {
-            compareWithTwin(score, picture, mode == Mode::kMono ? twins.middle() : twins.of(static_cast<int>(e)));
+            compareWithTwin(score, picture,
+                            mode == Mode::kMono ? twins.middle() : twins.of(static_cast<int>(e)));
         }
         score.passes = keeps(score, score.moved ? one.moved : one.rendered);
         result.pictures.push_back(std::move(score));
@@ -116,7 +133,9 @@ bool CaseScore::passes() const { return std::ranges::all_of(pictures, &PictureSc
 const PictureScore& CaseScore::worstOf(Mode mode) const {
     const PictureScore* worst = nullptr;
     for (const PictureScore& picture : pictures) {
-        if (picture.mode == mode && (worst == nullptr || picture.psnr_db < worst->psnr_db)) { worst = &picture; }
+        if (picture.mode == mode && (worst == nullptr || picture.psnr_db < worst->psnr_db)) {
+            worst = &picture;
+        }
     }
     return *worst;
 }
@@ -153,8 +172,10 @@ PathScore CaseRunner::run(const Path& path) {
     std::vector<glm::dvec4> device_before, twin_before;
     for (int step = 0; step < path.frames; ++step) {
         Eye eye = stage.middle;
-        eye.world_from_camera.position += eye.world_from_camera.orientation * (static_cast<double>(step) * path.step);
-        const Rendered rendered = renderOnce(frame, std::span<const Eye>(&eye, 1), settingsOf(Mode::kMono, stage.near));
+        eye.world_from_camera.position +=
+            eye.world_from_camera.orientation * (static_cast<double>(step) * path.step);
+        const Rendered rendered =
+            renderOnce(frame, std::span<const Eye>(&eye, 1), settingsOf(Mode::kMono, stage.near));
         const Image& picture = rendered.pictures.front();
         std::vector<glm::dvec4> twin = reference::render(stage.scene, eye, twin_settings).rgba, device;
         for (std::size_t i = 0; i < twin.size(); ++i) {

@@ -33,7 +33,8 @@ struct CaseScore {
     [[nodiscard]] const PictureScore& worstOf(Mode mode) const;
 };
 
-inline constexpr Mode kModes[] = {Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted};
+inline constexpr Mode kModes[] = {Mode::kMono,      Mode::kTwoPass, Mode::kShared,
+                                  Mode::kReproject, Mode::kPaper,   Mode::kPredicted};
 
 // The greatest change of any value from one frame to the next, on the device and in the twin, along a path.
 struct PathScore {
@@ -74,7 +75,8 @@ private:
     StereoFrame& show(const Stage& stage);
     StereoFrame& showIn(std::optional<StereoFrame>& frame);
     // So many frames; `after` each, with its number and its eyes.
-    void play(const Sequence& sequence, int frames, const std::function<void(int, const std::array<Eye, 2>&)>& after);
+    void play(const Sequence& sequence, int frames,
+              const std::function<void(int, const std::array<Eye, 2>&)>& after);
 
     const Context& context_;
     std::optional<GpuScene> scene_;  // of the last stage

@@ -29,13 +29,17 @@ std::vector<glm::dvec4> coloursOf(const Image& image) {
 }
 
 // The least and the greatest value of each channel over so many pixels on either side along an axis.
-void widen(std::vector<glm::dvec4>& least, std::vector<glm::dvec4>& most, glm::ivec2 size, glm::ivec2 axis, int reach) {
+void widen(std::vector<glm::dvec4>& least, std::vector<glm::dvec4>& most, glm::ivec2 size, glm::ivec2 axis,
+           int reach) {
     const std::vector<glm::dvec4> least_before = least, most_before = most;
-    const auto at = [&](const glm::ivec2& pixel) { return static_cast<std::size_t>(pixel.y * size.x + pixel.x); };
+    const auto at = [&](const glm::ivec2& pixel) {
+        return static_cast<std::size_t>(pixel.y * size.x + pixel.x);
+    };
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             for (int step = -reach; step <= reach; ++step) {
-                const std::size_t beside = at(glm::clamp(glm::ivec2(x, y) + step * axis, glm::ivec2(0), size - 1));
+                const std::size_t beside =
+                    at(glm::clamp(glm::ivec2(x, y) + step * axis, glm::ivec2(0), size - 1));
                 least[at({x, y})] = glm::min(least[at({x, y})], least_before[beside]);
                 most[at({x, y})] = glm::max(most[at({x, y})], most_before[beside]);
             }
@@ -74,7 +78,8 @@ double worstOf(const std::vector<SequenceScore::Frame>& frames, std::size_t begi
 
 }  // namespace
 
-void CaseRunner::play(const Sequence& sequence, int frames, const std::function<void(int, const std::array<Eye, 2>&)>& after) {
+void CaseRunner::play(const Sequence& sequence, int frames,
+                      const std::function<void(int, const std::array<Eye, 2>&)>& after) {
     Stage stage = sequence.make();
     show(stage);
     showIn(full_);
@@ -98,13 +103,16 @@ SequenceScore CaseRunner::run(const Sequence& sequence) {
     std::array<Image, 2> first;
     play(sequence, sequence.frames, [&](int frame, const std::array<Eye, 2>& eyes) {
         if (frame == played_twice - 1) { first = {shownTo(kLeft), shownTo(kRight)}; }
-        if (frame < sequence.first_scored || (frame - sequence.first_scored) % sequence.score_every != 0) { return; }
+        if (frame < sequence.first_scored || (frame - sequence.first_scored) % sequence.score_every != 0) {
+            return;
+        }
         FrameSettings full_settings;
         full_settings.mode = Mode::kShared;
         full_->render(eyes, full_settings);
         for (const int eye : {kLeft, kRight}) {
             const Image shown = shownTo(eye), full = full_->readPicture(eye);
-            PictureScore picture{.mode = sequence.mode, .eye = eye == kLeft ? "left" : "right", .moved = true};
+            PictureScore picture{
+                .mode = sequence.mode, .eye = eye == kLeft ? "left" : "right", .moved = true};
             const std::vector<glm::dvec4> wanted = coloursOf(full);
             compareWithTwin(picture, shown, wanted);
             picture.not_finite = countNotFinite(shown);
@@ -116,7 +124,8 @@ SequenceScore CaseRunner::run(const Sequence& sequence) {
         }
     });
     play(sequence, played_twice, [](int, const std::array<Eye, 2>&) {});
-    score.repeats = shownTo(kLeft).values == first[kLeft].values && shownTo(kRight).values == first[kRight].values;
+    score.repeats =
+        shownTo(kLeft).values == first[kLeft].values && shownTo(kRight).values == first[kRight].values;
 
     const std::size_t scored = score.frames.size(), third = std::max<std::size_t>(scored / 3, 1);
     score.psnr_db = worstOf(score.frames, 0, scored);
@@ -124,11 +133,14 @@ SequenceScore CaseRunner::run(const Sequence& sequence) {
     score.drift_db = std::isinf(last_db) ? 0.0 : worstOf(score.frames, 0, third) - last_db;
     for (SequenceScore::Frame& frame : score.frames) {
         frame.picture.repeats = score.repeats;
-        frame.picture.passes = score.repeats && frame.picture.not_finite == 0 && frame.picture.psnr_db >= sequence.psnr_db;
+        frame.picture.passes =
+            score.repeats && frame.picture.not_finite == 0 && frame.picture.psnr_db >= sequence.psnr_db;
     }
-    score.passes = std::ranges::all_of(score.frames, [](const SequenceScore::Frame& frame) { return frame.picture.passes; }) &&
-                   score.drift_db <= sequence.drift_db && score.beyond <= sequence.beyond && score.bias <= sequence.bias &&
-                   score.equal_from <= sequence.equal_from.value_or(sequence.frames);
+    score.passes =
+        std::ranges::all_of(score.frames,
+                            [](const SequenceScore::Frame& frame) { return frame.picture.passes; }) &&
+        score.drift_db <= sequence.drift_db && score.beyond <= sequence.beyond &&
+        score.bias <= sequence.bias && score.equal_from <= sequence.equal_from.value_or(sequence.frames);
     return score;
 }
 

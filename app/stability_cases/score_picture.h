@@ -8,6 +8,7 @@ namespace binosplat::stability {
 std::uint64_t countNotFinite(const Image& image);
 
 // Of red, green, blue and alpha. `counts`: which tiles do; empty: all.
-void compareWithTwin(PictureScore& score, const Image& image, const std::vector<glm::dvec4>& twin, const std::vector<bool>& counts = {});
+void compareWithTwin(PictureScore& score, const Image& image, const std::vector<glm::dvec4>& twin,
+                     const std::vector<bool>& counts = {});
 
 }  // namespace binosplat::stability

@@ -20,7 +20,8 @@ using Eyes = std::array<Eye, 2>;
 Eyes headAt(const Stage& stage, const glm::dvec3& place, double yaw_rad = 0.0) {
     Eye middle = stage.middle;
     middle.world_from_camera.position += middle.world_from_camera.orientation * place;
-    middle.world_from_camera.orientation = middle.world_from_camera.orientation * glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0));
+    middle.world_from_camera.orientation =
+        middle.world_from_camera.orientation * glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0));
     return stereoPair(middle, 0.063);
 }
 
@@ -30,14 +31,21 @@ Eyes walk(const Stage& stage, int frame) {
 }
 Eyes walkAndStop(const Stage& stage, int frame) { return walk(stage, std::min(frame, 5)); }
 // The picture moves to the left by a quarter of a pixel, and back.
-Eyes tremble(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.0), frame % 2 * 0.25 / stage.middle.intrinsics.fx); }
+Eyes tremble(const Stage& stage, int frame) {
+    return headAt(stage, glm::dvec3(0.0), frame % 2 * 0.25 / stage.middle.intrinsics.fx);
+}
 // At 90 frames a second.
-Eyes turnFast(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0); }
+Eyes turnFast(const Stage& stage, int frame) {
+    return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0);
+}
 Eyes passByWall(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.005 * frame, 0.0, 0.0)); }
 // By less than the change that drops a history.
 Eyes changeAngles(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
-    for (Eye& eye : eyes) { eye.intrinsics = intrinsicsFromFovX((60.0 + 0.5 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px); }
+    for (Eye& eye : eyes) {
+        eye.intrinsics =
+            intrinsicsFromFovX((60.0 + 0.5 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px);
+    }
     return eyes;
 }
 // As a runtime may that scales its pictures.
@@ -45,7 +53,8 @@ Eyes changeSize(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
     for (Eye& eye : eyes) {
         eye.size_px -= glm::uvec2(8, 5) * static_cast<unsigned>(frame % 4);
-        eye.intrinsics = intrinsicsFromFovX((60.0 + 0.7 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px);
+        eye.intrinsics =
+            intrinsicsFromFovX((60.0 + 0.7 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px);
     }
     return eyes;
 }
@@ -79,7 +88,8 @@ Stage makeSurround() {
         Disc disc;
         const glm::dvec3 direction = random.direction();
         disc.centre = random.between(3.0, 4.0) * direction;
-        disc.t_u = glm::cross(direction, std::abs(direction.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
+        disc.t_u =
+            glm::cross(direction, std::abs(direction.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
         disc.t_v = glm::cross(direction, disc.t_u);
         disc.scale = {random.between(0.1, 0.3), random.between(0.1, 0.3)};
         disc.opacity = 0.9;
@@ -125,7 +135,8 @@ std::vector<Sequence> makeSequences() {
          .drift_db = 1.0,
          .beyond = 0.1,
          .bias = 0.005,
-         .reason = "pictures that are sampled again and again blur until they are rendered, but neither ring nor drift"},
+         .reason = "pictures that are sampled again and again blur until they are rendered, but neither ring "
+                   "nor drift"},
         30.0, {});
     add({.name = "the same, nothing rendered again",
          .make = makeSpecks,

@@ -46,7 +46,8 @@ void StageBuilder::addWall(double depth) {
             add({.centre = depth * random.between(0.975, 1.025) * glm::dvec3(0.1 * i, 0.1 * j, 1.0),
                  .scale = glm::dvec2(0.06 * depth),
                  .opacity = 0.95,
-                 .colour = {0.5 + 0.3 * std::sin(0.9 * i), 0.5 + 0.3 * std::cos(0.7 * j), (i + j) % 2 == 0 ? 0.3 : 0.6}});
+                 .colour = {0.5 + 0.3 * std::sin(0.9 * i), 0.5 + 0.3 * std::cos(0.7 * j),
+                            (i + j) % 2 == 0 ? 0.3 : 0.6}});
         }
     }
 }
@@ -71,7 +72,8 @@ void StageBuilder::setEyeDistance(double distance, double canting_rad) {
     for (int e = 0; e < 2; ++e) {
         glm::dquat& orientation = eyes_[static_cast<std::size_t>(e)].world_from_camera.orientation;
         if (canting_rad != 0.0) {
-            orientation = orientation * glm::angleAxis(e == kLeft ? -canting_rad : canting_rad, glm::dvec3(0, 1, 0));
+            orientation =
+                orientation * glm::angleAxis(e == kLeft ? -canting_rad : canting_rad, glm::dvec3(0, 1, 0));
         }
     }
 }

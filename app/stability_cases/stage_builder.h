@@ -13,7 +13,9 @@ namespace binosplat::stability {
 class Random {
 public:
     explicit Random(unsigned seed) : engine_(seed) {}
-    double between(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 8) / 16777216.0; }
+    double between(double low, double high) {
+        return low + (high - low) * static_cast<double>(engine_() >> 8) / 16777216.0;
+    }
     glm::dvec3 colour() { return {between(0.0, 1.0), between(0.0, 1.0), between(0.0, 1.0)}; }
     glm::dvec3 direction();
 
@@ -36,7 +38,8 @@ inline constexpr glm::uvec2 kSizePx{96, 64};
 class StageBuilder {
 public:
     // An eye at `position_world`, turned, that sees 60 degrees; the eyes stand 0.063 apart.
-    explicit StageBuilder(glm::uvec2 size_px = kSizePx, double fov_x_deg = 60.0, const glm::dvec3& position_world = {0.3, -0.2, 0.1});
+    explicit StageBuilder(glm::uvec2 size_px = kSizePx, double fov_x_deg = 60.0,
+                          const glm::dvec3& position_world = {0.3, -0.2, 0.1});
     void add(const Disc& disc);
     // A wall of overlapping opaque discs `depth` before the eye, patterned, as wide as the view and some
     // more.

@@ -16,7 +16,8 @@ void countBands(const Scene& scene, SceneSummary& summary) {
         const float* sh = scene.sh.data() + splat * width;
         for (int band = 0; band <= scene.sh_degree; ++band) {
             const float* begin = sh + 3 * band * band;
-            const bool used = std::any_of(begin, sh + 3 * shCoefficientCount(band), [](float value) { return value != 0.0f; });
+            const bool used = std::any_of(begin, sh + 3 * shCoefficientCount(band),
+                                          [](float value) { return value != 0.0f; });
             summary.splats_using_band[static_cast<std::size_t>(band)] += used;
         }
     }
@@ -33,7 +34,9 @@ void listLeftOut(const LoadNotes* notes, SceneSummary& summary) {
         summary.left_out.push_back(fmt::format("{} splats of opacity under 1/255", summary.invisible_splats));
     }
     if (notes == nullptr) { return; }
-    if (notes->three_scales && !summary.gaussian_3d) { summary.left_out.emplace_back("the shortest axis of each splat"); }
+    if (notes->three_scales && !summary.gaussian_3d) {
+        summary.left_out.emplace_back("the shortest axis of each splat");
+    }
     const std::uint64_t broken = notes->skipped_not_finite + notes->skipped_zero_rotation;
     if (broken > 0) { summary.left_out.push_back(fmt::format("{} broken splats", broken)); }
 }
@@ -45,12 +48,14 @@ std::string describePlace(const glm::dvec3& place, double size) {
         const double more = size > 0.0 && value != 0.0 ? std::ceil(std::log10(std::abs(value) / size)) : 0.0;
         return static_cast<int>(std::clamp(4.0 + more, 4.0, 17.0));
     };
-    return fmt::format("{:.{}g},{:.{}g},{:.{}g}", place.x, digitsOf(place.x), place.y, digitsOf(place.y), place.z, digitsOf(place.z));
+    return fmt::format("{:.{}g},{:.{}g},{:.{}g}", place.x, digitsOf(place.x), place.y, digitsOf(place.y),
+                       place.z, digitsOf(place.z));
 }
 
 std::uint64_t sceneMemoryBytes(const Scene& scene) {
     return scene.positions.size() * sizeof(glm::vec3) + scene.rotations.size() * sizeof(glm::quat) +
-           scene.scales.size() * sizeof(glm::vec2) + (scene.thicknesses.size() + scene.opacities.size() + scene.sh.size()) * sizeof(float);
+           scene.scales.size() * sizeof(glm::vec2) +
+           (scene.thicknesses.size() + scene.opacities.size() + scene.sh.size()) * sizeof(float);
 }
 
 SceneSummary describeScene(const Scene& scene, const LoadNotes* notes) {
@@ -67,10 +72,12 @@ SceneSummary describeScene(const Scene& scene, const LoadNotes* notes) {
     countBands(scene, summary);
 
     std::vector<float> values = scene.opacities;
-    summary.invisible_splats =
-        static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), [](float o) { return o < 1.0f / 255.0f; }));
+    summary.invisible_splats = static_cast<std::uint64_t>(
+        std::count_if(values.begin(), values.end(), [](float o) { return o < 1.0f / 255.0f; }));
     summary.opacity_quantiles = findQuantiles(values, kSummaryQuantiles);
-    for (std::size_t i = 0; i < scene.size(); ++i) { values[i] = std::max(scene.scales[i].x, scene.scales[i].y); }
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        values[i] = std::max(scene.scales[i].x, scene.scales[i].y);
+    }
     summary.scale_quantiles = findQuantiles(values, kSummaryQuantiles);
     for (std::size_t i = 0; i < scene.size(); ++i) {
         const float longer = std::max(scene.scales[i].x, scene.scales[i].y);

@@ -33,7 +33,8 @@ template <std::size_t N>
 std::array<float, N> findQuantiles(std::vector<float>& values, const std::array<double, N>& shares) {
     std::array<float, N> quantiles{};
     for (std::size_t i = 0; i < N && !values.empty(); ++i) {
-        const auto rank = static_cast<std::ptrdiff_t>(std::llround(shares[i] * static_cast<double>(values.size() - 1)));
+        const auto rank =
+            static_cast<std::ptrdiff_t>(std::llround(shares[i] * static_cast<double>(values.size() - 1)));
         std::nth_element(values.begin(), values.begin() + rank, values.end());
         quantiles[i] = values[static_cast<std::size_t>(rank)];
     }

@@ -24,7 +24,10 @@ ProgressLine::~ProgressLine() {
 void ProgressLine::show(double share) {
     if (std::this_thread::get_id() == thread_) { stopIfInterrupted(); }
     const Clock::time_point now = Clock::now();
-    if (!terminal_ || now - start_ < std::chrono::seconds(1) || (shown_ && now - last_ < std::chrono::milliseconds(100))) { return; }
+    if (!terminal_ || now - start_ < std::chrono::seconds(1) ||
+        (shown_ && now - last_ < std::chrono::milliseconds(100))) {
+        return;
+    }
     const int percent = std::clamp(static_cast<int>(std::lround(100.0 * share)), 0, 100);
     fmt::print(stderr, "\r\033[K{} {} %", what_, percent);
     std::fflush(stderr);

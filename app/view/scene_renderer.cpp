@@ -20,17 +20,25 @@ glm::uvec2 scaledSize(const xr::Instance& instance, glm::uvec2 recommended_px, d
 glm::uvec2 coverPx(const FrameViews& views, glm::uvec2 view_px) {
     glm::uvec2 size_px(0);
     for (const xr::EyeView& eye : views.eyes) {
-        size_px = glm::max(size_px, coverOf(eyeInScene({}, {}, eye.fov, view_px), glm::radians(kAxesMarginDegrees)).size_px);
+        size_px = glm::max(
+            size_px, coverOf(eyeInScene({}, {}, eye.fov, view_px), glm::radians(kAxesMarginDegrees)).size_px);
     }
     return size_px;
 }
 
 }  // namespace
 
-SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
-                             vk::Format format)
-    : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format), has_gpu_(!context.isSoftware()) {
-    if (const std::optional<xr::InsetSizes> inset = xr::findInset(instance)) { context_px_ = inset->context_px; }
+SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options,
+                             const FrameLog& log, vk::Format format)
+    : instance_(instance),
+      options_(options),
+      log_(log),
+      format_(format),
+      presenter_(context, format),
+      has_gpu_(!context.isSoftware()) {
+    if (const std::optional<xr::InsetSizes> inset = xr::findInset(instance)) {
+        context_px_ = inset->context_px;
+    }
     presenter_.makeKernels();
 }
 
@@ -42,20 +50,25 @@ glm::uvec2 SceneRenderer::insetPx(const ConnectedHeadset& headset, double scale)
     return headset.inset ? scaledSize(instance_, headset.inset->inset_px, scale) : glm::uvec2(0);
 }
 
-bool SceneRenderer::mayStay(const ConnectedHeadset& headset, const ViewSettings& settings, glm::uvec2 cover_px) {
+bool SceneRenderer::mayStay(const ConnectedHeadset& headset, const ViewSettings& settings,
+                            glm::uvec2 cover_px) {
     if (settings.stereo.axes != Axes::kStay) { return false; }
     const glm::uvec2 most_px = instance_.maxSizePx();
     std::string why_not;
     if (headset.inset) {
         why_not = "the headset takes insets";
     } else if (glm::any(glm::greaterThan(cover_px, most_px))) {
-        why_not = fmt::format("pictures of {}x{} are larger than the runtime's {}x{}", cover_px.x, cover_px.y, most_px.x, most_px.y);
+        why_not = fmt::format("pictures of {}x{} are larger than the runtime's {}x{}", cover_px.x, cover_px.y,
+                              most_px.x, most_px.y);
     }
-    if (std::exchange(why_not_, why_not) != why_not && !why_not.empty()) { log_.say("axes follow the view: " + why_not); }
+    if (std::exchange(why_not_, why_not) != why_not && !why_not.empty()) {
+        log_.say("axes follow the view: " + why_not);
+    }
     return why_not.empty();
 }
 
-void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views) {
+void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings,
+                              const FrameViews& views) {
     context_px_ = headset.inset ? std::optional(headset.inset->context_px) : std::nullopt;
     const glm::uvec2 view_px = sizePx(settings), inset_px = insetPx(headset, settings.resolution_scale);
     const glm::uvec2 cover_px = coverPx(views, view_px);
@@ -91,7 +104,8 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
 void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views) {
     // With coarse tiles both eyes are rendered whatever the budget.
     const StereoOptions& stereo = settings.stereo;
-    const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
+    const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery &&
+                        stereo.foveation_deg > 0.0 && !headset.inset;
     governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode,
                    {stereo.warp.budget, settings.resolution_scale, stereo.warp.error_bound_db});
     fitImages(headset, settings, views);
@@ -103,7 +117,8 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
 }
 
 ShownRate SceneRenderer::rate() const {
-    ShownRate rate{met_.metHz(), met_.displayHz(), met_.late(), governor_.settings().resolution_scale, {}, {}, governor_.isBeaten()};
+    ShownRate rate{met_.metHz(), met_.displayHz(),    met_.late(), governor_.settings().resolution_scale, {},
+                   {},           governor_.isBeaten()};
     const bool renders_both = frame_.mode == Mode::kPredicted && hasCoarseTiles(frame_, 2);
     const GovernedSettings& chosen = governor_.settings();
     if (chosen.error_bound_db > 0.0 && frame_.mode == Mode::kTemporal) {
@@ -120,7 +135,8 @@ void SceneRenderer::meetDisplay(const xr::Session& session) {
     const bool is_late = met_.late() > 0;
     if (std::exchange(is_late_, is_late) || !is_late) { return; }
     const FrameCost cost{last_.gpu_total_ms, 1e3 * session.busySeconds(), 1e3 * session.openSeconds()};
-    log_.say(fmt::format("a frame was late (a display takes {:.1f} ms): {}", period_ms, whyLate(cost, period_ms)));
+    log_.say(
+        fmt::format("a frame was late (a display takes {:.1f} ms): {}", period_ms, whyLate(cost, period_ms)));
 }
 
 bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
@@ -134,8 +150,8 @@ glm::dvec3 SceneRenderer::backgroundOf(const ViewSettings& settings, const glm::
     return settings.backdrop == Backdrop::kAsSet ? set : colourOf(settings.backdrop);
 }
 
-FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
-                                             const FrameViews& views) {
+FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings,
+                                             double scale, const FrameViews& views) {
     StereoOptions stereo = settings.stereo;
     stereo.warp.budget = governor_.settings().budget;
     stereo.warp.error_bound_db = governor_.settings().error_bound_db;
@@ -156,15 +172,15 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
-        frame.hidden_tiles =
-            headset.lens_mask.update(headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes, view_px_);
+        frame.hidden_tiles = headset.lens_mask.update(
+            headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes, view_px_);
         sayHidden(frame.hidden_tiles);
     }
     return frame;
 }
 
-void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                            FrameViews& views) {
+void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
+                            const ViewSettings& settings, FrameViews& views) {
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views);
     eyes_.clear();
     inset_eyes_.clear();
@@ -199,7 +215,8 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
     }
 }
 
-void SceneRenderer::keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views) {
+void SceneRenderer::keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room,
+                             FrameViews& views) {
     const std::span<const Eye> pictures = axes_.follow(seen_, frame_.hidden_tiles);
     eyes_.assign(pictures.begin(), pictures.end());
     frame_.hidden_tiles = axes_.hiddenTiles();
@@ -212,15 +229,16 @@ void SceneRenderer::keepAxes(ConnectedHeadset& headset, const Similarity& scene_
     }
 }
 
-void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views) {
+void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room,
+                              const FrameViews& views) {
     inset_frame_ = frame_;
     inset_frame_.hidden_tiles = {};
     inset_frame_.gazes = {};
     const glm::uvec2 size_px = headset.inset_images->partPx();
     for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
-        const Eye& inset =
-            inset_eyes_.emplace_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, size_px));
+        const Eye& inset = inset_eyes_.emplace_back(
+            eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, size_px));
         // One low-pass for both, or thin splats would be wider around the inset than within.
         Eye& about = eyes_[inset_eyes_.size() - 1];
         about.own_pixel_px = std::min(about.intrinsics.fx / inset.intrinsics.fx, 1.0);
@@ -231,8 +249,8 @@ void SceneRenderer::meetOther(const ConnectedHeadset& headset, ShownScene& shown
     shown.meetOther(eyes_, frame_, headset.inset ? inset_eyes_ : std::vector<Eye>(), inset_frame_);
 }
 
-PictureShot SceneRenderer::shotOf(const ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                                  const FrameViews& views) const {
+PictureShot SceneRenderer::shotOf(const ShownScene& shown, const Similarity& scene_from_room,
+                                  const ViewSettings& settings, const FrameViews& views) const {
     StereoOptions stereo = settings.stereo;
     stereo.mode = settings.picture_both_eyes ? Mode::kShared : Mode::kMono;
     stereo.foveation_deg = 0.0;
@@ -245,13 +263,14 @@ PictureShot SceneRenderer::shotOf(const ShownScene& shown, const Similarity& sce
     for (const int e : {kLeft, kRight}) {
         if (!settings.picture_both_eyes && e != stereo.dominant) { continue; }
         const auto at = static_cast<std::size_t>(e);
-        eyes.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, instance_.recommendedSizePx()));
+        eyes.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov,
+                                  instance_.recommendedSizePx()));
     }
     return shown.shotOf(std::move(eyes), frame);
 }
 
-void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
-                           const std::function<void(Commands&)>& record_panel) {
+void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings,
+                           MirrorWindow* window, const std::function<void(Commands&)>& record_panel) {
     headset.images->seeThrough(seesThrough(settings));
     for (const int e : drawnEyes()) {
         headset.images->acquire(e, settings.submit_depth);
@@ -259,9 +278,10 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
     }
     if (headset.inset) {
         headset.inset_images->seeThrough(seesThrough(settings));
-        const std::optional<FrameResult> known = shown.insets().renderAhead(inset_eyes_, inset_frame_, [&](Commands& commands) {
-            recordEyes(commands, *headset.inset_images, shown.insets(), settings.tint, nullptr);
-        });
+        const std::optional<FrameResult> known =
+            shown.insets().renderAhead(inset_eyes_, inset_frame_, [&](Commands& commands) {
+                recordEyes(commands, *headset.inset_images, shown.insets(), settings.tint, nullptr);
+            });
         if (known) { insets_ms_ = known->gpu_total_ms; }
     } else {
         insets_ms_ = 0.0;
@@ -293,16 +313,19 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
     sayCutShort(shown.drawsOther());
 }
 
-void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window) {
+void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint,
+                               MirrorWindow* window) {
     for (const int e : drawnEyes()) {
         const bool is_mono = frame_.mode == Mode::kMono;
-        images.present(commands, e, frame.picture(is_mono ? 0 : e), tint ? frame.chosenTiles(e) : nullptr, frame_.near);
+        images.present(commands, e, frame.picture(is_mono ? 0 : e), tint ? frame.chosenTiles(e) : nullptr,
+                       frame_.near);
         // The window shows the dominant eye or, with tint, the eye that is made from it.
         const bool shown = is_mono || (e == frame_.dominant) != tint;
         if (window == nullptr || !window->drawn() || !shown) { continue; }
         const std::size_t at = is_mono ? 0 : static_cast<std::size_t>(e);
-        const Buffer& pixels =
-            stays_ ? presenter_.turn(commands, images.partPx(), view_px_, pictureFromView(eyes_[at], seen_[at])) : presenter_.pixels();
+        const Buffer& pixels = stays_ ? presenter_.turn(commands, images.partPx(), view_px_,
+                                                        pictureFromView(eyes_[at], seen_[at]))
+                                      : presenter_.pixels();
         window->keepEye(commands, pixels, view_px_, format_);
     }
 }
@@ -332,7 +355,8 @@ void SceneRenderer::sayCutShort(bool of_other) {
 void SceneRenderer::sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden) {
     const std::array<std::uint32_t, 2> tiles{countHidden(hidden[kLeft]), countHidden(hidden[kRight])};
     if (tiles == std::array<std::uint32_t, 2>{} || std::exchange(hidden_tiles_, tiles) == tiles) { return; }
-    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", tiles[kLeft], tiles[kRight], hidden[kLeft].size()));
+    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", tiles[kLeft], tiles[kRight],
+                         hidden[kLeft].size()));
 }
 
 }  // namespace binosplat

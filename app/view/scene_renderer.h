@@ -32,10 +32,13 @@ struct FrameViews {
 class SceneRenderer {
 public:
     // `format` is the format of every session's images; the rest outlives this.
-    SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log, vk::Format format);
+    SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options,
+                  const FrameLog& log, vk::Format format);
 
     // The size of what an eye sees, as the wearer wants it; with insets, of the context.
-    [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const { return sizePx(settings.resolution_scale); }
+    [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const {
+        return sizePx(settings.resolution_scale);
+    }
     // Makes the headset's images as large as the wearer wants, or larger if axes stay, and applies the
     // governor to the wearer's settings, within them. Throws Error if images of another size fail; then they
     // keep their size.
@@ -45,22 +48,24 @@ public:
 
     // Prepares what render() will show of the scene that is drawn, and sets the pictures of `views`. Throws
     // Error if memory is short; then nothing is shown until this succeeds with less.
-    void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                 FrameViews& views);
+    void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
+                 const ViewSettings& settings, FrameViews& views);
     // See ShownScene; once that is prepared.
     void meetOther(const ConnectedHeadset& headset, ShownScene& shown) const;
     // Renders and presents that, in one submission with what `record_panel` records, and does not wait for
     // it. With a `window`, one eye's picture is kept for it.
-    void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
-                const std::function<void(Commands&)>& record_panel);
+    void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings,
+                MirrorWindow* window, const std::function<void(Commands&)>& record_panel);
 
     // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the
     // frames are.
-    [[nodiscard]] PictureShot shotOf(const ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                                     const FrameViews& views) const;
+    [[nodiscard]] PictureShot shotOf(const ShownScene& shown, const Similarity& scene_from_room,
+                                     const ViewSettings& settings, const FrameViews& views) const;
 
     // True if the wearer wants the room behind the scene, and the headset can show it.
-    [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
+    [[nodiscard]] bool seesThrough(const ViewSettings& settings) const {
+        return settings.passthrough && instance_.canSeeThrough();
+    }
     // The last frame that the device has finished. No counters before a scene's first frame.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
     // For the prepared pictures, and for what their eyes see of them.
@@ -93,22 +98,27 @@ private:
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
     // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the
     // wearer wants that.
-    [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings, glm::uvec2 cover_px);
+    [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings,
+                               glm::uvec2 cover_px);
     // Prepares pictures whose axes stay, of the eyes that were prepared.
     void keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views);
     [[nodiscard]] glm::uvec2 sizePx(double scale) const;
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
     // Sets up the insets' eyes, after the eyes that they are part of.
-    void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views);
+    void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room,
+                   const FrameViews& views);
     [[nodiscard]] std::span<const int> drawnEyes() const {
         static constexpr std::array<int, 2> kEyes{kLeft, kRight};
-        return frame_.mode == Mode::kMono ? std::span(kEyes).subspan(static_cast<std::size_t>(frame_.dominant), 1) : std::span(kEyes);
+        return frame_.mode == Mode::kMono
+                   ? std::span(kEyes).subspan(static_cast<std::size_t>(frame_.dominant), 1)
+                   : std::span(kEyes);
     }
     [[nodiscard]] glm::dvec3 backgroundOf(const ViewSettings& settings, const glm::dvec3& set) const;
-    [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
-                                                const FrameViews& views);
+    [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings,
+                                                double scale, const FrameViews& views);
     // Presents the eyes of `frame` into `images`.
-    void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window);
+    void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint,
+                    MirrorWindow* window);
     // Fits the splats of a streamed scene to the frame time, unless the user sets a number.
     void fitSplats(SceneStream& stream, double period_ms);
     void sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden);

@@ -36,38 +36,43 @@ std::string firstError(const fs::path& log, const fs::path& source) {
     return source.string() + " does not compile";
 }
 
-std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& stage, const std::string& name,
-                                         const fs::path& scratch) {
-    const fs::path source = folder / stage / (name + ".comp"), words = scratch / (name + ".spv"), log = scratch / (name + ".log");
+std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& stage,
+                                         const std::string& name, const fs::path& scratch) {
+    const fs::path source = folder / stage / (name + ".comp"), words = scratch / (name + ".spv"),
+                   log = scratch / (name + ".log");
     std::error_code ignored;
     check(fs::exists(source, ignored), "{} is not there", source.string());
     // The compiler would wait for a pipe.
     check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());
     // As in shaders/CMakeLists.txt. The compiler comes with the package glslang-tools.
-    const bool ok = runProgram({"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
-                                "-I" + folder.string(), "-o", words.string(), source.string()},
-                               log);
+    const bool ok = runProgram(
+        {"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
+         "-I" + folder.string(), "-o", words.string(), source.string()},
+        log);
     check(ok, "{}", firstError(log, source));
     return readWords(words);
 }
 
 }  // namespace
 
-fs::path shaderFolder(const fs::path& folder) { return folder.empty() ? fs::path(environment("BINOSPLAT_SHADERS")) : folder; }
+fs::path shaderFolder(const fs::path& folder) {
+    return folder.empty() ? fs::path(environment("BINOSPLAT_SHADERS")) : folder;
+}
 
 ShaderWords compileShaders(const fs::path& folder) {
     const TemporaryFolder scratch("binosplat-shaders-", "compiled shaders");
     std::vector<std::pair<std::string, std::future<std::vector<std::uint32_t>>>> results;
     for (const auto& [stage, name] : embeddedShaderNames()) {
-        results.emplace_back(name,
-                             std::async(std::launch::async, compileShader, folder, std::string(stage), std::string(name), scratch.path()));
+        results.emplace_back(name, std::async(std::launch::async, compileShader, folder, std::string(stage),
+                                              std::string(name), scratch.path()));
     }
     ShaderWords shaders;
     for (auto& [name, words] : results) { shaders[name] = words.get(); }
     return shaders;
 }
 
-std::string reloadShaders(const Context& context, const fs::path& folder, const std::function<void()>& rebuild) {
+std::string reloadShaders(const Context& context, const fs::path& folder,
+                          const std::function<void()>& rebuild) {
     const auto start = std::chrono::steady_clock::now();
     ShaderWords before;
     bool replaced = false;

@@ -20,6 +20,7 @@ ShaderWords compileShaders(const std::filesystem::path& folder);
 // Compiles them, replaces the context's shaders and calls `rebuild`, which remakes all kernels. If either
 // fails, everything stays as it was. Returns the outcome in one line. Structs that shaders share with C++
 // (shaders/shared) must be those of the build.
-std::string reloadShaders(const Context& context, const std::filesystem::path& folder, const std::function<void()>& rebuild);
+std::string reloadShaders(const Context& context, const std::filesystem::path& folder,
+                          const std::function<void()>& rebuild);
 
 }  // namespace binosplat

@@ -22,12 +22,16 @@ constexpr std::uint64_t kFramesAtRest = 90;
 fs::path findManifest() {
     const fs::path folder = programFile().parent_path();
     const fs::path installed = fs::path("share") / "openxr" / "1" / "binosplat_simulated_runtime.json";
-    const std::array candidates{folder / "simulated_runtime.json", folder.parent_path() / installed, "/usr" / installed};
-    const auto* found = std::ranges::find_if(candidates, [](const fs::path& path) { return fs::exists(path); });
+    const std::array candidates{folder / "simulated_runtime.json", folder.parent_path() / installed,
+                                "/usr" / installed};
+    const auto* found =
+        std::ranges::find_if(candidates, [](const fs::path& path) { return fs::exists(path); });
     if (found == candidates.end()) {
-        throw Error(ExitCode::kNoDevice, fmt::format("the simulated runtime is not installed: neither {} nor {} exists; install "
-                                                     "binosplat-simulated-runtime, run ./run build or, on Windows, unpack the whole .zip",
-                                                     candidates[0].string(), candidates[1].string()));
+        throw Error(
+            ExitCode::kNoDevice,
+            fmt::format("the simulated runtime is not installed: neither {} nor {} exists; install "
+                        "binosplat-simulated-runtime, run ./run build or, on Windows, unpack the whole .zip",
+                        candidates[0].string(), candidates[1].string()));
     }
     return *found;
 }
@@ -39,10 +43,12 @@ void simulateHeadset(ViewOptions& options) {
     setEnvironment("XR_RUNTIME_JSON", manifest.string());
     if (!options.script.empty()) {
         std::error_code ignored;
-        check(fs::is_regular_file(options.script, ignored), "--simulate: {} is not a file, must be a script (see docs/simulated_script.md)",
+        check(fs::is_regular_file(options.script, ignored),
+              "--simulate: {} is not a file, must be a script (see docs/simulated_script.md)",
               options.script);
         const std::uintmax_t bytes = fs::file_size(options.script, ignored);
-        check(bytes <= kMostTextBytes, "--simulate: {} is longer than {} MiB, must be a script (see docs/simulated_script.md)",
+        check(bytes <= kMostTextBytes,
+              "--simulate: {} is longer than {} MiB, must be a script (see docs/simulated_script.md)",
               options.script, kMostTextBytes >> 20);
         setEnvironment("SIMULATED_OPENXR_SCRIPT", fs::absolute(options.script).string());
     }

@@ -60,13 +60,15 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
 ViewSettings suitDevice(ViewOptions& options, const Context& context) {
     const auto properties = context.physicalDevice().getProperties();
     DeviceDefaults device =
-        defaultsOf(context.deviceName(), properties.deviceType == vk::PhysicalDeviceType::eIntegratedGpu, context.deviceMemoryBytes());
+        defaultsOf(context.deviceName(), properties.deviceType == vk::PhysicalDeviceType::eIntegratedGpu,
+                   context.deviceMemoryBytes());
     if (!options.run.load.sh_degree) { options.run.load.sh_degree = device.sh_degree; }
     options.run.load.most_splats = device.most_splats;
     const auto namesRate = [](const SettingsTable& table) { return table.settings.contains("refresh-rate"); };
     if (std::ranges::none_of(options.tables, namesRate)) { options.usual_rate_hz = device.refresh_rate; }
     if (const std::string words = describeDefaults(device); !words.empty()) {
-        FrameLog::print(fmt::format("{}: a small device, starts with {}, see docs/arm.md", context.deviceName(), words));
+        FrameLog::print(
+            fmt::format("{}: a small device, starts with {}, see docs/arm.md", context.deviceName(), words));
     }
     if (context.isSoftware()) { device.quality = Quality::kOff; }  // no setting makes these fast enough
     return startSettings(options, device);
@@ -82,7 +84,8 @@ void showScene(ViewOptions options, xr::Instance& instance) {
     }
     const Context context(context_options);
     const glm::uvec2 size_px = instance.recommendedSizePx();
-    FrameLog::print(fmt::format("{}, {}x{} per eye, on {}", instance.description(), size_px.x, size_px.y, context.deviceName()));
+    FrameLog::print(fmt::format("{}, {}x{} per eye, on {}", instance.description(), size_px.x, size_px.y,
+                                context.deviceName()));
     const ViewSettings settings = suitDevice(options, context);
     std::unique_ptr<EventWindow> window;
     try {
@@ -105,16 +108,21 @@ void showScene(ViewOptions options, xr::Instance& instance) {
 std::unique_ptr<xr::Instance> askRuntime(xr::InstanceOptions options) {
     options.wait_for_headset = [begin = std::chrono::steady_clock::now()](const std::string& runtime) {
         stopIfInterrupted();
-        if (std::chrono::steady_clock::now() - begin > kLongestWait) { throw Error(ExitCode::kNoDevice, runtime + " has no headset"); }
+        if (std::chrono::steady_clock::now() - begin > kLongestWait) {
+            throw Error(ExitCode::kNoDevice, runtime + " has no headset");
+        }
         std::this_thread::sleep_for(kBetweenLooks);
     };
-    std::packaged_task<std::unique_ptr<xr::Instance>()> ask([options] { return std::make_unique<xr::Instance>(options); });
+    std::packaged_task<std::unique_ptr<xr::Instance>()> ask(
+        [options] { return std::make_unique<xr::Instance>(options); });
     std::future<std::unique_ptr<xr::Instance>> answer = ask.get_future();
     std::thread(std::move(ask)).detach();
     const auto latest = std::chrono::steady_clock::now() + kLongestWait + 2 * kBetweenLooks;
     while (answer.wait_for(kBetweenLooks) != std::future_status::ready) {
         stopIfInterrupted();
-        if (std::chrono::steady_clock::now() > latest) { throw Error(ExitCode::kNoDevice, "the OpenXR runtime does not answer"); }
+        if (std::chrono::steady_clock::now() > latest) {
+            throw Error(ExitCode::kNoDevice, "the OpenXR runtime does not answer");
+        }
     }
     return answer.get();
 }
@@ -131,22 +139,29 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
     instance_options.foveated_inset = settings.wantsInset();
     std::unique_ptr<WaitingWindow> waiting;
     const bool must_have_one = options.simulate || options.headset_only || !hasDisplay();
-    instance_options.wait_for_headset = [&waiting](const std::string& runtime) { waitForHeadset(runtime, waiting); };
+    instance_options.wait_for_headset = [&waiting](const std::string& runtime) {
+        waitForHeadset(runtime, waiting);
+    };
     std::unique_ptr<xr::Instance> instance;
     try {
-        instance = must_have_one ? std::make_unique<xr::Instance>(instance_options) : askRuntime(instance_options);
+        instance =
+            must_have_one ? std::make_unique<xr::Instance>(instance_options) : askRuntime(instance_options);
         waiting.reset();
         has_headset = true;
         showScene(options, *instance);
     } catch (const Interrupted&) {  // while waiting for a headset
         fmt::print("0 frames; stopped before there was a headset\n");
-    } catch (const xr::Lost& lost) { throw Error(ExitCode::kNoDevice, lost.what()); } catch (const xr::InstanceLost& lost) {
+    } catch (const xr::Lost& lost) {
+        throw Error(ExitCode::kNoDevice, lost.what());
+    } catch (const xr::InstanceLost& lost) {
         throw Error(ExitCode::kNoDevice, lost.what());
     } catch (const xr::RuntimeFailed&) {
         // The runtime has printed where and why.
         check(!options.simulate || options.script.empty(),
-              "--simulate: the simulated headset does not start with {}, see docs/simulated_script.md", options.script);
-        check(!options.simulate || options.out.empty(), "--out: the simulated headset does not start with {}", options.out.string());
+              "--simulate: the simulated headset does not start with {}, see docs/simulated_script.md",
+              options.script);
+        check(!options.simulate || options.out.empty(), "--out: the simulated headset does not start with {}",
+              options.out.string());
         throw;
     }
 }

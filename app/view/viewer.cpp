@@ -18,8 +18,8 @@ constexpr std::chrono::milliseconds kIdle(5);
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context,
-               EventWindow* window)
+Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance,
+               const Context& context, EventWindow* window)
     : options_(options),
       instance_(instance),
       context_(context),
@@ -35,7 +35,8 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       first_steps_(files_, settings.first_steps),
       viewpoints_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_,
-              FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
+              FramesAhead{
+                  settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
     for (const double rate_hz : headset().refresh_rates) {
         if (options_.usual_rate_hz == 0.0 || std::abs(rate_hz - options_.usual_rate_hz) > 0.5) { continue; }
         ViewSettings usual = state_.settings();
@@ -43,7 +44,9 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
         state_.set(usual);
     }
     panel_.status().can_reload_shaders = !shaderFolder(options.shaders).empty();
-    if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
+    if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) {
+        log_.print(complaint);
+    }
     if (window != nullptr) { openWindow(*window); }
 }
 
@@ -57,7 +60,9 @@ void Viewer::run() {
             std::this_thread::sleep_for(kIdle);
         }
         for (bool goes_on = true; goes_on;) {
-            if (!leaving_ && (isInterrupted() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
+            if (!leaving_ && (isInterrupted() || (options_.frames != 0 && log_.frame >= options_.frames))) {
+                leave();
+            }
             try {
                 goes_on = connection_.headset() != nullptr ? step() : comeBack();
             } catch (const xr::Lost& lost) {
@@ -75,11 +80,13 @@ void Viewer::run() {
     files_.finish();
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->moving != nullptr) {
         const StreamCounters counters = scene->moving->counters();
-        log_.print(fmt::format("scene frames that came late: {}; frames that waited for them: {}", counters.scene_frames_late,
-                               counters.frames_waited_for_loading));
+        log_.print(fmt::format("scene frames that came late: {}; frames that waited for them: {}",
+                               counters.scene_frames_late, counters.frames_waited_for_loading));
     }
-    const std::string why = connection_.headset() != nullptr ? headset().session.whyEnded() : "stopped while there was no headset";
-    log_.print(fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
+    const std::string why = connection_.headset() != nullptr ? headset().session.whyEnded()
+                                                             : "stopped while there was no headset";
+    log_.print(
+        fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
 }
 
 bool Viewer::step() {
@@ -116,7 +123,8 @@ void Viewer::loseHeadset(const std::string& why) {
 
 bool Viewer::comeBack() {
     if (leaving_) { return false; }
-    const HeadsetConnection::Search came = connection_.search([this](const std::string& message) { say(message); });
+    const HeadsetConnection::Search came =
+        connection_.search([this](const std::string& message) { say(message); });
     if (came == HeadsetConnection::Search::kLater) {
         drawWindowAlone("The headset is unplugged: plug it in");
         std::this_thread::sleep_for(kIdle);

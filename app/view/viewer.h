@@ -27,7 +27,8 @@ class Viewer {
 public:
     // `instance` and `context` outlive the viewer. Begins to load the scene. Its frames are shown in
     // `window`, too, if it is given.
-    Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, EventWindow* window);
+    Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance,
+           const Context& context, EventWindow* window);
 
     // Runs until the runtime, the wearer, Ctrl-C or --frames ends it. Prints changes by frame, and why it
     // ended, to stdout. A lost session is followed by another one, with the scene as it is, once there is a
@@ -98,7 +99,9 @@ private:
     void keepPictureAtOnce();
     [[nodiscard]] bool isWorthKeeping() const;  // a picture of the scene
     // In frames, and so in the renderer's pictures and views.
-    [[nodiscard]] std::size_t eyeOfPicture() const { return drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant); }
+    [[nodiscard]] std::size_t eyeOfPicture() const {
+        return drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);
+    }
     void load();
     void reloadShaders();
     void sayPicture(const std::optional<std::string>& outcome);

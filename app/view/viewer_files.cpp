@@ -51,7 +51,9 @@ void Viewer::meetOther() {
 }
 
 void Viewer::openAndSave(const PanelRequests& requests) {
-    if (requests.save && scenes_.get() != nullptr) { notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get())); }
+    if (requests.save && scenes_.get() != nullptr) {
+        notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
+    }
     if (requests.load) { load(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
     if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
@@ -83,7 +85,8 @@ void Viewer::reloadShaders() {
     if (scenes_.get() == nullptr || !panel_.status().can_reload_shaders) { return; }
     // Their threads may be making kernels.
     if (scenes_.isLoading() || pictures_.isTaking()) {
-        say(fmt::format("shaders stay as they are until {}", pictures_.isTaking() ? "the picture is written" : "the next scene is loaded"));
+        say(fmt::format("shaders stay as they are until {}",
+                        pictures_.isTaking() ? "the picture is written" : "the next scene is loaded"));
         return;
     }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {

@@ -41,7 +41,8 @@ std::optional<FrameViews> Viewer::locate() {
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
     FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}, eyes};
     if (const auto& insets = headset().session.insets()) {
-        views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]}, xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
+        views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]},
+                                     xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
     }
     return views;
 }
@@ -61,7 +62,8 @@ void Viewer::drawFrame() {
     FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
-    WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds, probes_seen_.hands};
+    WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(),
+                     step_seconds, probes_seen_.hands};
     wearer.ground_scene = std::move(probes_seen_.ground);
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->floor) {
         wearer.scene_floor = SceneFloor{scene->up, *scene->floor};
@@ -70,7 +72,8 @@ void Viewer::drawFrame() {
     measure(wearer.hands);
     probeScene(wearer.floor_m.value_or(kUsualFloorMetres));
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
-        views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
+        views.gazes =
+            gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
     }
@@ -87,7 +90,10 @@ void Viewer::drawFrame() {
     }
     chooseThings(wearer, views);
     takeWindowInput(step_seconds);
-    if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate); !complaint.empty()) { say(complaint); }
+    if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate);
+        !complaint.empty()) {
+        say(complaint);
+    }
     panel_.status().state.clear();
     panel_hangs_ = state_.settings().panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
@@ -122,8 +128,9 @@ void Viewer::drawFrame() {
     onWindow(&MirrorWindow::show);
     showFrame(views);
     if (takes_picture) {
-        pictures_.begin(renderer_.shotOf(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
-                        scenes_.drawn()->name);
+        pictures_.begin(
+            renderer_.shotOf(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
+            scenes_.drawn()->name);
     }
     sayChange();
     panel_.keepFrameTime();
@@ -136,11 +143,12 @@ void Viewer::sayLive(LoadedScene& scene) {
     if (!work) { return; }
     said_there_ = true;
     const StreamCounters counters = scene.stream->counters();
-    log_.say(
-        fmt::format("everything in view is loaded: {} splats, {} levels of leaves, {:.2f} million splats read in {:.1f} s; frames that "
-                    "waited for it: {}",
-                    counters.splats_resident, counters.chunks_resident, 1e-6 * static_cast<double>(work->splats), work->seconds,
-                    counters.frames_waited_for_loading));
+    log_.say(fmt::format(
+        "everything in view is loaded: {} splats, {} levels of leaves, {:.2f} million splats read in {:.1f} "
+        "s; frames that "
+        "waited for it: {}",
+        counters.splats_resident, counters.chunks_resident, 1e-6 * static_cast<double>(work->splats),
+        work->seconds, counters.frames_waited_for_loading));
 }
 
 bool Viewer::prepareScene(FrameViews& views) {
@@ -149,11 +157,15 @@ bool Viewer::prepareScene(FrameViews& views) {
     scenes_.expect(asked.stereo, renderer_.sizePx(asked), asked.tint);
     const ViewSettings drawable = scenes_.drawable(asked);
     const bool waits = drawable != asked;
-    if (std::exchange(waits_for_kernels_, waits) && !waits) { log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode))); }
+    if (std::exchange(waits_for_kernels_, waits) && !waits) {
+        log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode)));
+    }
     drawn_ = waits ? drawable : state_.settings();
     try {
         renderer_.govern(headset(), drawn_, views);
-        if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), drawn_, views); }
+        if (scenes_.get() != nullptr) {
+            renderer_.prepare(headset(), scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), drawn_, views);
+        }
         state_.keepFitting(drawn_);
         return true;
     } catch (const Error& error) {
@@ -193,10 +205,14 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
 
 void Viewer::probeScene(double feet_m) {
     std::array<std::optional<ProbePath>, kProbePaths> paths;
-    if (state_.settings().follow_ground && !scenes_.drawsOther()) { paths[kGroundPath] = groundAhead(room_from_head_, feet_m); }
+    if (state_.settings().follow_ground && !scenes_.drawsOther()) {
+        paths[kGroundPath] = groundAhead(room_from_head_, feet_m);
+    }
     for (const int h : {kLeft, kRight}) {
         if (!state_.settings().hands) { break; }  // hidden hands point at nothing
-        if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) { paths[static_cast<std::size_t>(h)] = probeRay(*aim); }
+        if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) {
+            paths[static_cast<std::size_t>(h)] = probeRay(*aim);
+        }
     }
     if (const Arc* const arc = controls_.arc(); controls_.aimingHand() && arc != nullptr) {
         ProbePath& path = paths[static_cast<std::size_t>(*controls_.aimingHand())].emplace();
@@ -235,7 +251,8 @@ void Viewer::renderWaiting() {
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
     const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
-    const glm::vec4 colour = renderer_.seesThrough(state_.settings()) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
+    const glm::vec4 colour =
+        renderer_.seesThrough(state_.settings()) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
     for (EyeImages* images : all) {
         for (const int e : {kLeft, kRight}) { images->clear(commands_, e, colour); }
     }
@@ -259,7 +276,10 @@ void Viewer::submitFrame(const FrameViews& views) {
         xr::Layers layers(headset().session, most_things);
         addEyes(layers, views);
         headset().things.addBehindPanel(layers);
-        if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), headset().panel_images); }
+        if (panel_hangs_) {
+            layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(),
+                            headset().panel_images);
+        }
         headset().things.addBeforePanel(layers);
         things = layers.quadNames();
         headset().session.endFrame(layers.list());
@@ -277,13 +297,15 @@ void Viewer::submitFrame(const FrameViews& views) {
     // takes the rest.
     for (std::size_t most = things.size(); most-- > 0;) {
         if (!isTaken(most)) { continue; }
-        instance_.troubles().add(fmt::format("{}; going on without hands, rays and the vignette: it refuses {}", refusal, things[most]));
+        instance_.troubles().add(fmt::format(
+            "{}; going on without hands, rays and the vignette: it refuses {}", refusal, things[most]));
         headset().things.giveUp();
         return;
     }
     if (renderer_.dropDepth(headset())) { log_.say("the runtime refuses depth; going on without depth"); }
     if (!isTaken(SIZE_MAX)) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures{}", refusal, panel_hangs_ ? ", or the panel" : ""));
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures{}", refusal,
+                                                     panel_hangs_ ? ", or the panel" : ""));
     }
 }
 
@@ -291,14 +313,18 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](const EyeImages& images, const std::array<xr::EyeView, 2>& eyes, int shown_to) {
         // If both eyes share a picture, both use the pose and angles of its eye.
         const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
-        return images.layerEye(e, eyes[static_cast<std::size_t>(e)], options_.run.camera.near.value_or(kUsualNear));
+        return images.layerEye(e, eyes[static_cast<std::size_t>(e)],
+                               options_.run.camera.near.value_or(kUsualNear));
     };
     const EyeImages& images = *headset().images;
-    const xr::LayerEye left = layerEye(images, views.pictures, kLeft), right = layerEye(images, views.pictures, kRight);
+    const xr::LayerEye left = layerEye(images, views.pictures, kLeft),
+                       right = layerEye(images, views.pictures, kRight);
     const bool see_through = renderer_.seesThrough(state_.settings());
     if (!headset().inset) { return layers.addEyes({left, right}, see_through); }
     const EyeImages& insets = *headset().inset_images;
-    layers.addEyesAndInsets({left, right, layerEye(insets, *views.insets, kLeft), layerEye(insets, *views.insets, kRight)}, see_through);
+    layers.addEyesAndInsets(
+        {left, right, layerEye(insets, *views.insets, kLeft), layerEye(insets, *views.insets, kRight)},
+        see_through);
 }
 
 }  // namespace binosplat

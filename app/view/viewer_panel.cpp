@@ -106,8 +106,8 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
         status.tours = viewpoints_.isTouring();
         status.time.reset();
         if (const LoadedScene& scene = *scenes_.get(); scene.moving != nullptr) {
-            status.time = {scene.clock.frame(), scene.clock.frameCount(), scene.moving->rateHz(), scene.clock.plays(),
-                           scene.moving->counters().scene_frames_late};
+            status.time = {scene.clock.frame(), scene.clock.frameCount(), scene.moving->rateHz(),
+                           scene.clock.plays(), scene.moving->counters().scene_frames_late};
         }
     }
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
@@ -116,8 +116,8 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
         status.files = fmt::format("preparing {}", nameOf(state_.settings().stereo.mode));
     }
     keepPreferences(step_seconds, false);
-    followPanel(panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer, window_input_.uses_panel, state_.settings(),
-                              step_seconds));
+    followPanel(panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer,
+                              window_input_.uses_panel, state_.settings(), step_seconds));
 }
 
 void Viewer::moveTime(bool play, int step, std::optional<std::size_t> frame) {

@@ -33,12 +33,15 @@ ShownPlace Viewer::shownPlace() const {
 void Viewer::movePlace(const PanelRequests& requests) {
     LoadedScene& scene = *scenes_.get();
     if (requests.reset_scene) { state_.place(scene.start); }
-    if (requests.level_scene) { state_.place(levelledAlong(state_.sceneFromRoom(), scene.up, room_from_head_.position)); }
+    if (requests.level_scene) {
+        state_.place(levelledAlong(state_.sceneFromRoom(), scene.up, room_from_head_.position));
+    }
     if (requests.measure) { say(openRuler(ruler_)); }
     const std::optional<double> measured = takeMeasure(requests, ruler_, scene);
-    const double growth = requests.natural_size || measured
-                              ? scene.measured.value_or(options_.run.metres_per_unit) * state_.sceneFromRoom().scale
-                              : requests.growth;
+    const double growth =
+        requests.natural_size || measured
+            ? scene.measured.value_or(options_.run.metres_per_unit) * state_.sceneFromRoom().scale
+            : requests.growth;
     if (growth != 1.0) {
         // About the feet, so that the wearer stays on the floor.
         const ShownPlace place = shownPlace();
@@ -47,7 +50,9 @@ void Viewer::movePlace(const PanelRequests& requests) {
         state_.place(grownBy(state_.sceneFromRoom(), growth, feet));
     }
     if (measured) { notes_.save(scene.name, savedPlace(state_, scene)); }
-    if (requests.rise_m != 0.0) { state_.place(movedBy(state_.sceneFromRoom(), {0.0, -requests.rise_m, 0.0})); }
+    if (requests.rise_m != 0.0) {
+        state_.place(movedBy(state_.sceneFromRoom(), {0.0, -requests.rise_m, 0.0}));
+    }
     if (requests.viewpoint_step != 0) { goTo(viewpoints_.goBy(requests.viewpoint_step)); }
     if (requests.keep_viewpoint) { viewpoints_.keep(viewOf(state_.sceneFromRoom(), room_from_head_)); }
     followViewpoints(requests, panel_.entry(), viewpoints_);
@@ -61,7 +66,8 @@ void Viewer::measure(const std::array<xr::Hand, 2>& hands) {
         if (!begins || !ruler_.isOpen() || !aim || scenes_.get() == nullptr) { continue; }
         std::optional<glm::dvec3> place;
         if (probes_seen_.hands[at].meets) {
-            place = transform(state_.sceneFromRoom(), transform(*aim, {0.0, 0.0, probeMetres(*probes_seen_.hands[at].meets)}));
+            place = transform(state_.sceneFromRoom(),
+                              transform(*aim, {0.0, 0.0, probeMetres(*probes_seen_.hands[at].meets)}));
         }
         say(measureAt(place, ruler_, state_.sceneFromRoom().scale, panel_.entry()));
         if (!ruler_.isOpen()) { showPanel(); }
@@ -81,12 +87,15 @@ void Viewer::goTo(const Viewpoint* viewpoint) {
     log_.say(viewpoints_.words());
 }
 
-bool Viewer::isWorthKeeping() const { return scenes_.get() != nullptr && frames_of_scene_ >= kLeastFramesSeen && !scenes_.drawsOther(); }
+bool Viewer::isWorthKeeping() const {
+    return scenes_.get() != nullptr && frames_of_scene_ >= kLeastFramesSeen && !scenes_.drawsOther();
+}
 
 void Viewer::recordCopy(Commands& commands) {
     if (scenes_.drawsOther()) { return; }
     const std::size_t eye = eyeOfPicture();
-    copy_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye), renderer_.views().at(eye));
+    copy_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye),
+                 renderer_.views().at(eye));
 }
 
 bool Viewer::hasKeptPicture() {
@@ -103,8 +112,10 @@ void Viewer::keepPictureAtOnce() {
     frames_of_scene_ = 0;
     try {
         waitForQueue();
-        notes_.keepPicture(*scenes_.get(), [picture = scenes_.frame().readPicture(static_cast<int>(eye)), of = renderer_.pictures().at(eye),
-                                            view = renderer_.views().at(eye)] { return showTurned(picture, of, view); });
+        notes_.keepPicture(
+            *scenes_.get(),
+            [picture = scenes_.frame().readPicture(static_cast<int>(eye)), of = renderer_.pictures().at(eye),
+             view = renderer_.views().at(eye)] { return showTurned(picture, of, view); });
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
     } catch (const Error&) {}

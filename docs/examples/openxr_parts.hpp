@@ -21,7 +21,8 @@ Function find(XrInstance instance, const char* name) {
 
 // The images of an eye, one of which OpenXR lends at a time.
 struct Swapchain {
-    Swapchain(XrSession session, VkFormat format, XrSwapchainUsageFlags usage, const XrViewConfigurationView& size) {
+    Swapchain(XrSession session, VkFormat format, XrSwapchainUsageFlags usage,
+              const XrViewConfigurationView& size) {
         XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
         // binosplat reads what the program drew, and writes the picture with splats in it.
         info.usageFlags = usage | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
@@ -33,7 +34,8 @@ struct Swapchain {
         std::uint32_t count = 0;
         check(xrEnumerateSwapchainImages(handle, 0, &count, nullptr));
         images.resize(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN_KHR});
-        check(xrEnumerateSwapchainImages(handle, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
+        check(xrEnumerateSwapchainImages(handle, count, &count,
+                                         reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
         sub = {handle, {{0, 0}, {static_cast<int>(info.width), static_cast<int>(info.height)}}, 0};
     }
     VkImage acquire() {
@@ -56,7 +58,8 @@ inline bool followStates(XrInstance xr, XrSession session, bool& runs) {
         const auto& change = reinterpret_cast<const XrEventDataSessionStateChanged&>(event);
         if (change.state == XR_SESSION_STATE_EXITING) { return false; }
         if (change.state == XR_SESSION_STATE_READY) {
-            const XrSessionBeginInfo begin{XR_TYPE_SESSION_BEGIN_INFO, nullptr, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
+            const XrSessionBeginInfo begin{XR_TYPE_SESSION_BEGIN_INFO, nullptr,
+                                           XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
             check(xrBeginSession(session, &begin));
             runs = true;
         } else if (change.state == XR_SESSION_STATE_STOPPING) {

@@ -26,8 +26,10 @@ constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_SRGB, kDepth = VK_FORMAT_D32_SFL
 void run(const char* source) {
     // OpenXR, as every Vulkan program begins.
     XrInstance xr = XR_NULL_HANDLE;
-    const char* const extensions[]{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME};
-    XrInstanceCreateInfo instance_info{XR_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, {"openxr_program", 1, "", 0, XR_MAKE_VERSION(1, 0, 0)}};
+    const char* const extensions[]{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME,
+                                   XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME};
+    XrInstanceCreateInfo instance_info{
+        XR_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, {"openxr_program", 1, "", 0, XR_MAKE_VERSION(1, 0, 0)}};
     instance_info.enabledExtensionCount = 2;
     instance_info.enabledExtensionNames = extensions;
     check(xrCreateInstance(&instance_info, &xr));
@@ -37,7 +39,8 @@ void run(const char* source) {
 
     // Vulkan, with what binosplat needs.
     XrGraphicsRequirementsVulkan2KHR needs{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
-    check(find<PFN_xrGetVulkanGraphicsRequirements2KHR>(xr, "xrGetVulkanGraphicsRequirements2KHR")(xr, system, &needs));
+    check(find<PFN_xrGetVulkanGraphicsRequirements2KHR>(xr, "xrGetVulkanGraphicsRequirements2KHR")(xr, system,
+                                                                                                   &needs));
     vk::raii::Context loader;
     const auto load = loader.getDispatcher()->vkGetInstanceProcAddr;
     const vk::ApplicationInfo application("openxr_program", 1, "", 0, VK_API_VERSION_1_2);
@@ -46,9 +49,11 @@ void run(const char* source) {
         XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, system, 0, load, &vulkan_info, nullptr};
     VkInstance vulkan = VK_NULL_HANDLE;
     VkResult vulkan_result{};
-    check(find<PFN_xrCreateVulkanInstanceKHR>(xr, "xrCreateVulkanInstanceKHR")(xr, &of_instance, &vulkan, &vulkan_result));
+    check(find<PFN_xrCreateVulkanInstanceKHR>(xr, "xrCreateVulkanInstanceKHR")(xr, &of_instance, &vulkan,
+                                                                               &vulkan_result));
     const vk::raii::Instance instance(loader, vulkan);
-    const XrVulkanGraphicsDeviceGetInfoKHR of_gpu{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
+    const XrVulkanGraphicsDeviceGetInfoKHR of_gpu{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr,
+                                                  system, vulkan};
     VkPhysicalDevice gpu = VK_NULL_HANDLE;
     check(find<PFN_xrGetVulkanGraphicsDevice2KHR>(xr, "xrGetVulkanGraphicsDevice2KHR")(xr, &of_gpu, &gpu));
     const vk::raii::PhysicalDevice physical(instance, gpu);
@@ -61,7 +66,8 @@ void run(const char* source) {
     const XrVulkanDeviceCreateInfoKHR of_device{
         XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, load, gpu, &device_info, nullptr};
     VkDevice made = VK_NULL_HANDLE;
-    check(find<PFN_xrCreateVulkanDeviceKHR>(xr, "xrCreateVulkanDeviceKHR")(xr, &of_device, &made, &vulkan_result));
+    check(find<PFN_xrCreateVulkanDeviceKHR>(xr, "xrCreateVulkanDeviceKHR")(xr, &of_device, &made,
+                                                                           &vulkan_result));
     const vk::raii::Device device(physical, made);
     const vk::raii::Queue queue = device.getQueue(0, 0);
 
@@ -81,17 +87,22 @@ void run(const char* source) {
     const bsp_scene_properties start = scene.properties();
     bsp::Renderer renderer(splats);
 
-    XrGraphicsBindingVulkan2KHR binding{XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR, nullptr, vulkan, gpu, made, 0, 0};
+    XrGraphicsBindingVulkan2KHR binding{
+        XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR, nullptr, vulkan, gpu, made, 0, 0};
     const XrSessionCreateInfo session_info{XR_TYPE_SESSION_CREATE_INFO, &binding, 0, system};
     XrSession session = XR_NULL_HANDLE;
     check(xrCreateSession(xr, &session_info, &session));
-    const XrReferenceSpaceCreateInfo space_info{
-        XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL, {{0, 0, 0, 1}, {0, 0, 0}}};
+    const XrReferenceSpaceCreateInfo space_info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO,
+                                                nullptr,
+                                                XR_REFERENCE_SPACE_TYPE_LOCAL,
+                                                {{0, 0, 0, 1}, {0, 0, 0}}};
     XrSpace space = XR_NULL_HANDLE;
     check(xrCreateReferenceSpace(session, &space_info, &space));
-    std::array<XrViewConfigurationView, 2> sizes{{{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}}};
+    std::array<XrViewConfigurationView, 2> sizes{
+        {{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}}};
     std::uint32_t count = 2;
-    check(xrEnumerateViewConfigurationViews(xr, system, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, 2, &count, sizes.data()));
+    check(xrEnumerateViewConfigurationViews(xr, system, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, 2, &count,
+                                            sizes.data()));
     std::vector<Swapchain> colours, depths;
     for (const XrViewConfigurationView& size : sizes) {
         colours.emplace_back(session, kColour, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT, size);
@@ -99,8 +110,10 @@ void run(const char* source) {
     }
 
     const Cube cube(device, vk::Format(kColour), vk::Format(kDepth));
-    const vk::raii::CommandPool pool(device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, 0));
-    const vk::raii::CommandBuffers buffers(device, vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1));
+    const vk::raii::CommandPool pool(
+        device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, 0));
+    const vk::raii::CommandBuffers buffers(
+        device, vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1));
     const vk::raii::CommandBuffer& commands = buffers[0];
     const vk::raii::Fence fence(device, vk::FenceCreateInfo());
     bool runs = false, is_prepared = false;
@@ -117,12 +130,14 @@ void run(const char* source) {
         check(xrBeginFrame(session, nullptr));
         std::array<XrView, 2> eyes{{{XR_TYPE_VIEW}, {XR_TYPE_VIEW}}};
         XrViewState view_state{XR_TYPE_VIEW_STATE};
-        const XrViewLocateInfo locate{XR_TYPE_VIEW_LOCATE_INFO, nullptr, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
-                                      state.predictedDisplayTime, space};
+        const XrViewLocateInfo locate{XR_TYPE_VIEW_LOCATE_INFO, nullptr,
+                                      XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, state.predictedDisplayTime,
+                                      space};
         check(xrLocateViews(session, &locate, &view_state, 2, &count, eyes.data()));
         std::array<XrCompositionLayerProjectionView, 2> shown{};
         std::array<XrCompositionLayerDepthInfoKHR, 2> shown_depths{};
-        XrCompositionLayerProjection layer{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, shown.data()};
+        XrCompositionLayerProjection layer{
+            XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, shown.data()};
         const auto* header = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
         if (state.shouldRender) {
             std::array<bsp_target, 2> targets{};
@@ -149,15 +164,19 @@ void run(const char* source) {
                             sizes[e].recommendedImageRectHeight};
                 const auto see = [&](VkImage image, VkFormat format, vk::ImageAspectFlagBits aspect) {
                     return *image_views.emplace_back(
-                        device, vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, vk::Format(format), {}, {aspect, 0, 1, 0, 1}));
+                        device, vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, vk::Format(format),
+                                                        {}, {aspect, 0, 1, 0, 1}));
                 };
                 const std::array seen{see(targets[e].colour, kColour, vk::ImageAspectFlagBits::eColor),
                                       see(targets[e].depth, kDepth, vk::ImageAspectFlagBits::eDepth)};
-                framebuffers.emplace_back(device, vk::FramebufferCreateInfo({}, *cube.pass, seen, views[e].width, views[e].height, 1));
+                framebuffers.emplace_back(
+                    device,
+                    vk::FramebufferCreateInfo({}, *cube.pass, seen, views[e].width, views[e].height, 1));
                 cube.draw(commands, *framebuffers.back(), views[e], clipFromCube(views[e], start.look, 0.5));
                 shown_depths[e] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, depths[e].sub, 0, 1,
                                    std::numeric_limits<float>::infinity(),   kNear};
-                shown[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, &shown_depths[e], eyes[e].pose, eyes[e].fov, colours[e].sub};
+                shown[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, &shown_depths[e], eyes[e].pose,
+                            eyes[e].fov, colours[e].sub};
             }
             bsp_frame_info frame = bsp::frame();
             frame.scene = scene.get();
@@ -173,15 +192,20 @@ void run(const char* source) {
             const vk::CommandBuffer buffer = *commands;
             queue.submit(vk::SubmitInfo({}, {}, buffer), *fence);
             // A program with two command buffers would do this a frame later, and would not wait.
-            if (device.waitForFences(*fence, VK_TRUE, UINT64_MAX) != vk::Result::eSuccess) { throw std::runtime_error("no frame in time"); }
+            if (device.waitForFences(*fence, VK_TRUE, UINT64_MAX) != vk::Result::eSuccess) {
+                throw std::runtime_error("no frame in time");
+            }
             device.resetFences(*fence);
             bsp::check(bsp_collect(renderer.get(), number, nullptr));
             for (const std::vector<Swapchain>* chains : {&colours, &depths}) {
-                for (const Swapchain& chain : *chains) { check(xrReleaseSwapchainImage(chain.handle, nullptr)); }
+                for (const Swapchain& chain : *chains) {
+                    check(xrReleaseSwapchainImage(chain.handle, nullptr));
+                }
             }
             ++frames;
         }
-        const XrFrameEndInfo end{XR_TYPE_FRAME_END_INFO,       nullptr, state.predictedDisplayTime, XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
+        const XrFrameEndInfo end{XR_TYPE_FRAME_END_INFO,       nullptr,
+                                 state.predictedDisplayTime,   XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
                                  state.shouldRender ? 1u : 0u, &header};
         check(xrEndFrame(session, &end));
     }

@@ -15,13 +15,15 @@ int main(int count, char** words) {
         bsp::Device device;
         bsp::Scene scene(device, words[1]);
         scene.wait();
-        std::printf("%llu splats on %s\n", static_cast<unsigned long long>(scene.properties().splats), device.name().c_str());
+        std::printf("%llu splats on %s\n", static_cast<unsigned long long>(scene.properties().splats),
+                    device.name().c_str());
 
         const double eye_distance = 0.063, fov_x_rad = 1.2;
         bsp::Views views = scene.startViews(eye_distance, fov_x_rad, 512, 384);
         if (count == 8) {
             const auto number = [&](int i) { return std::atof(words[i]); };
-            const double eye[]{number(2), number(3), number(4)}, look[]{number(5), number(6), number(7)}, up[]{0, -1, 0};
+            const double eye[]{number(2), number(3), number(4)}, look[]{number(5), number(6), number(7)},
+                up[]{0, -1, 0};
             views = bsp::lookAt(eye, look, up, eye_distance, fov_x_rad, 512, 384);
         }
         bsp::Renderer renderer(device);

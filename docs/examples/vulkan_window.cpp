@@ -38,9 +38,12 @@ void run(GLFWwindow* window, const char* source, long frames_left) {
     std::uint32_t count = 0;
     const char** const extensions = glfwGetRequiredInstanceExtensions(&count);
     const vk::ApplicationInfo application("vulkan_window", 1, "", 0, VK_API_VERSION_1_2);
-    const vk::raii::Instance instance(loader, vk::InstanceCreateInfo({}, &application, 0, nullptr, count, extensions));
+    const vk::raii::Instance instance(
+        loader, vk::InstanceCreateInfo({}, &application, 0, nullptr, count, extensions));
     VkSurfaceKHR raw_surface = VK_NULL_HANDLE;
-    if (glfwCreateWindowSurface(*instance, window, nullptr, &raw_surface) != VK_SUCCESS) { throw std::runtime_error("no surface"); }
+    if (glfwCreateWindowSurface(*instance, window, nullptr, &raw_surface) != VK_SUCCESS) {
+        throw std::runtime_error("no surface");
+    }
     const vk::raii::SurfaceKHR surface(instance, raw_surface);
     const vk::raii::PhysicalDevice physical = std::move(vk::raii::PhysicalDevices(instance).at(0));
 
@@ -50,7 +53,8 @@ void run(GLFWwindow* window, const char* source, long frames_left) {
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue_info({}, 0, 1, &priority);
     const char* const swapchains = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-    const vk::raii::Device device(physical, vk::DeviceCreateInfo({}, queue_info, {}, swapchains, nullptr, &features));
+    const vk::raii::Device device(physical,
+                                  vk::DeviceCreateInfo({}, queue_info, {}, swapchains, nullptr, &features));
     const vk::raii::Queue queue = device.getQueue(0, 0);
 
     // The images of the window, which binosplat reads and writes besides, and one depth for all of them.
@@ -59,19 +63,23 @@ void run(GLFWwindow* window, const char* source, long frames_left) {
     const vk::Extent2D size(kWidth, kHeight);
     const vk::raii::SwapchainKHR swapchain(
         device,
-        vk::SwapchainCreateInfoKHR({}, *surface, std::max(3u, capabilities.minImageCount), kColour, vk::ColorSpaceKHR::eSrgbNonlinear, size,
-                                   1, Usage::eColorAttachment | Usage::eTransferSrc | Usage::eTransferDst, vk::SharingMode::eExclusive, {},
-                                   capabilities.currentTransform));
+        vk::SwapchainCreateInfoKHR({}, *surface, std::max(3u, capabilities.minImageCount), kColour,
+                                   vk::ColorSpaceKHR::eSrgbNonlinear, size, 1,
+                                   Usage::eColorAttachment | Usage::eTransferSrc | Usage::eTransferDst,
+                                   vk::SharingMode::eExclusive, {}, capabilities.currentTransform));
     const vk::raii::Image depth(
-        device, vk::ImageCreateInfo({}, vk::ImageType::e2D, kDepth, {kWidth, kHeight, 1}, 1, 1, vk::SampleCountFlagBits::e1,
-                                    vk::ImageTiling::eOptimal, Usage::eDepthStencilAttachment | Usage::eTransferSrc | Usage::eTransferDst));
+        device,
+        vk::ImageCreateInfo({}, vk::ImageType::e2D, kDepth, {kWidth, kHeight, 1}, 1, 1,
+                            vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                            Usage::eDepthStencilAttachment | Usage::eTransferSrc | Usage::eTransferDst));
     const vk::MemoryRequirements needs = depth.getMemoryRequirements();
     std::uint32_t type = 0;
     while ((needs.memoryTypeBits >> type & 1) == 0) { ++type; }
     const vk::raii::DeviceMemory depth_memory(device, vk::MemoryAllocateInfo(needs.size, type));
     depth.bindMemory(*depth_memory, 0);
     const auto see = [&](vk::Image image, vk::Format format, vk::ImageAspectFlagBits aspect) {
-        return vk::raii::ImageView(device, vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, format, {}, {aspect, 0, 1, 0, 1}));
+        return vk::raii::ImageView(device, vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, format,
+                                                                   {}, {aspect, 0, 1, 0, 1}));
     };
     const vk::raii::ImageView depth_view = see(*depth, kDepth, vk::ImageAspectFlagBits::eDepth);
     const Cube cube(device, kColour, kDepth);
@@ -80,8 +88,10 @@ void run(GLFWwindow* window, const char* source, long frames_left) {
     std::vector<vk::raii::ImageView> views;
     std::vector<vk::raii::Framebuffer> framebuffers;
     for (const VkImage image : images) {
-        const std::array both{*views.emplace_back(see(image, kColour, vk::ImageAspectFlagBits::eColor)), *depth_view};
-        framebuffers.emplace_back(device, vk::FramebufferCreateInfo({}, *cube.pass, both, kWidth, kHeight, 1));
+        const std::array both{*views.emplace_back(see(image, kColour, vk::ImageAspectFlagBits::eColor)),
+                              *depth_view};
+        framebuffers.emplace_back(device,
+                                  vk::FramebufferCreateInfo({}, *cube.pass, both, kWidth, kHeight, 1));
     }
 
     // binosplat on this device. Nothing else uses the queue while the scene loads.
@@ -99,8 +109,10 @@ void run(GLFWwindow* window, const char* source, long frames_left) {
     const bsp_scene_properties start = scene.properties();
     bsp::Renderer renderer(splats);
 
-    const vk::raii::CommandPool pool(device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, 0));
-    const vk::raii::CommandBuffers buffers(device, vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 2));
+    const vk::raii::CommandPool pool(
+        device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, 0));
+    const vk::raii::CommandBuffers buffers(
+        device, vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 2));
     std::array<Frame, 2> frames{Frame(device, *buffers[0]), Frame(device, *buffers[1])};
     const auto collect = [&](Frame& frame) {
         if (frame.number == 0) { return; }

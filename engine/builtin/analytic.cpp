@@ -9,8 +9,8 @@ namespace {
 
 glm::quat makeIdentity() { return glm::identity<glm::quat>(); }
 
-void addDisc(Scene& scene, const glm::vec3& centre, const glm::quat& rotation, const glm::vec2& scales, float opacity,
-             const glm::vec3& colour) {
+void addDisc(Scene& scene, const glm::vec3& centre, const glm::quat& rotation, const glm::vec2& scales,
+             float opacity, const glm::vec3& colour) {
     scene.positions.push_back(centre);
     scene.rotations.push_back(rotation);
     scene.scales.push_back(scales);
@@ -47,7 +47,8 @@ Scene makeSlantedWall() {
     for (int j = 0; j <= 40; ++j) {
         for (int i = 0; i <= 40; ++i) {
             const float s = kStep * static_cast<float>(i - 20), y = kStep * static_cast<float>(j - 20);
-            const glm::vec3 colour(0.2f + 0.6f * static_cast<float>(i) / 40.0f, 0.2f + 0.6f * static_cast<float>(j) / 40.0f, 0.5f);
+            const glm::vec3 colour(0.2f + 0.6f * static_cast<float>(i) / 40.0f,
+                                   0.2f + 0.6f * static_cast<float>(j) / 40.0f, 0.5f);
             addDisc(scene, {along * s, y, 4.0f + along * s}, rotation, {0.08f, 0.08f}, 0.95f, colour);
         }
     }
@@ -80,12 +81,14 @@ Scene makeFence() {
     Scene scene;
     for (int i = 0; i <= 8; ++i) {
         for (int j = 0; j <= 80; ++j) {
-            const glm::vec3 centre(-0.8f + 0.2f * static_cast<float>(i), -1.0f + 0.025f * static_cast<float>(j), 1.0f);
+            const glm::vec3 centre(-0.8f + 0.2f * static_cast<float>(i),
+                                   -1.0f + 0.025f * static_cast<float>(j), 1.0f);
             addDisc(scene, centre, makeIdentity(), {0.006f, 0.02f}, 0.95f, {0.5f, 0.3f, 0.15f});
         }
     }
-    addWall(scene, 3.0f,
-            [](float x, float y) { return glm::vec3(0.3f + 0.1f * std::sin(2.0f * x), 0.5f, 0.6f + 0.1f * std::sin(3.0f * y)); });
+    addWall(scene, 3.0f, [](float x, float y) {
+        return glm::vec3(0.3f + 0.1f * std::sin(2.0f * x), 0.5f, 0.6f + 0.1f * std::sin(3.0f * y));
+    });
     return scene;
 }
 

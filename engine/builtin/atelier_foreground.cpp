@@ -23,12 +23,14 @@ void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
     constexpr float kTop = -1.86f, kRail = -0.80f;
     const auto addBar = [&](float s, float y0, float y1, float half_width, float half_depth, float detail) {
         const glm::vec2 at = from + s * along;
-        addBox(draft, {{at.x, 0.5f * (y0 + y1), at.y}, {half_width, 0.5f * std::abs(y1 - y0), half_depth}, yaw}, cherry, detail,
-               half_width > 0.01f);
+        addBox(draft,
+               {{at.x, 0.5f * (y0 + y1), at.y}, {half_width, 0.5f * std::abs(y1 - y0), half_depth}, yaw},
+               cherry, detail, half_width > 0.01f);
     };
     const auto addRail = [&](float y, float s0, float s1, float half_height, float half_depth, float detail) {
         const glm::vec2 at = from + 0.5f * (s0 + s1) * along;
-        addBox(draft, {{at.x, y, at.y}, {0.5f * (s1 - s0) * width, half_height, half_depth}, yaw}, cherry, detail, half_height > 0.01f);
+        addBox(draft, {{at.x, y, at.y}, {0.5f * (s1 - s0) * width, half_height, half_depth}, yaw}, cherry,
+               detail, half_height > 0.01f);
     };
     addBar(0.0f, 0.0f, kTop, 0.013f, 0.013f, 14.0f);
     addBar(1.0f, 0.0f, kTop, 0.013f, 0.013f, 14.0f);
@@ -36,13 +38,16 @@ void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
     addRail(0.5f * (kRail - 0.06f), 0.0f, 1.0f, 0.5f * (-0.06f - kRail), 0.005f, 4.0f);
     // The lattice: four uprights and nine cross bars, with short pieces between every other pair.
     constexpr int kUprights = 4, kBars = 9;
-    for (int i = 1; i <= kUprights; ++i) { addBar(static_cast<float>(i) / (kUprights + 1), kRail, kTop, 0.0045f, 0.007f, 24.0f); }
+    for (int i = 1; i <= kUprights; ++i) {
+        addBar(static_cast<float>(i) / (kUprights + 1), kRail, kTop, 0.0045f, 0.007f, 24.0f);
+    }
     for (int j = 1; j <= kBars; ++j) {
         const float y = kRail + (kTop - kRail) * static_cast<float>(j) / (kBars + 1);
         addRail(y, 0.0f, 1.0f, 0.0045f, 0.006f, 24.0f);
         for (int i = 0; i <= kUprights; ++i) {
             if ((i + j) % 2 == 0) {
-                addBar((static_cast<float>(i) + 0.5f) / (kUprights + 1), y, y + (kTop - kRail) / (kBars + 1), 0.003f, 0.005f, 24.0f);
+                addBar((static_cast<float>(i) + 0.5f) / (kUprights + 1), y, y + (kTop - kRail) / (kBars + 1),
+                       0.003f, 0.005f, 24.0f);
             }
         }
     }
@@ -53,18 +58,30 @@ void addPlant(Draft& draft) {
     const glm::vec3 foot(0.76f, 0.0f, 1.17f);
     addRevolution(
         draft, foot,
-        {{0.0f, 0.0f}, {0.13f, 0.0f}, {0.15f, 0.1f}, {0.185f, 0.26f}, {0.195f, 0.34f}, {0.175f, 0.345f}, {0.17f, 0.32f}, {0.0f, 0.31f}},
+        {{0.0f, 0.0f},
+         {0.13f, 0.0f},
+         {0.15f, 0.1f},
+         {0.185f, 0.26f},
+         {0.195f, 0.34f},
+         {0.175f, 0.345f},
+         {0.17f, 0.32f},
+         {0.0f, 0.31f}},
         [](const glm::vec3& p, const glm::vec2& uv) {
-            return Material{glm::vec3(0.52f, 0.23f, 0.12f) * (0.8f + 0.4f * fractalNoise({uv.x * 30.0f, p.y * 24.0f}, 411u)),
+            return Material{glm::vec3(0.52f, 0.23f, 0.12f) *
+                                (0.8f + 0.4f * fractalNoise({uv.x * 30.0f, p.y * 24.0f}, 411u)),
                             glm::vec3(0.0f), 0.98f};
         },
         5.0f);
-    draft.occluders().push_back({Occluder::Shape::kEllipsoid, foot + glm::vec3(0.0f, -0.16f, 0.0f), {0.19f, 0.19f, 0.19f}, 0.0f});
-    const glm::vec3 tips[] = {
-        {0.60f, -1.36f, 1.04f}, {0.60f, -1.72f, 1.05f}, {0.52f, -1.02f, 1.04f}, {0.90f, -1.45f, 1.25f}, {0.64f, -1.56f, 0.92f}};
+    draft.occluders().push_back(
+        {Occluder::Shape::kEllipsoid, foot + glm::vec3(0.0f, -0.16f, 0.0f), {0.19f, 0.19f, 0.19f}, 0.0f});
+    const glm::vec3 tips[] = {{0.60f, -1.36f, 1.04f},
+                              {0.60f, -1.72f, 1.05f},
+                              {0.52f, -1.02f, 1.04f},
+                              {0.90f, -1.45f, 1.25f},
+                              {0.64f, -1.56f, 0.92f}};
     for (std::uint32_t stem = 0; stem < std::size(tips); ++stem) {
-        const glm::vec3 root =
-            foot + glm::vec3(0.05f * (static_cast<float>(stem % 3) - 1.0f), -0.31f, 0.04f * (static_cast<float>(stem % 2) - 0.5f));
+        const glm::vec3 root = foot + glm::vec3(0.05f * (static_cast<float>(stem % 3) - 1.0f), -0.31f,
+                                                0.04f * (static_cast<float>(stem % 2) - 0.5f));
         addRod(draft, root, tips[stem], 0.0055f, plain({0.22f, 0.24f, 0.09f}), 14.0f);
         constexpr std::uint32_t kLeaves = 13;
         for (std::uint32_t i = 0; i < kLeaves; ++i) {

@@ -14,11 +14,14 @@ const glm::vec3 kEye(0.0f, -1.5f, 1.0f);  // about where the window is seen from
 
 // The far side of a room needs splats by the angle it fills, not by its area: this many per square metre of
 // window, seen from 4 m.
-float detailFor(float seen_from_m, float window_detail) { return window_detail * 16.0f / (seen_from_m * seen_from_m); }
+float detailFor(float seen_from_m, float window_detail) {
+    return window_detail * 16.0f / (seen_from_m * seen_from_m);
+}
 
 // Height of a ridge above the eye's level, at an angle from straight ahead.
 float ridgeHeight(float angle, float distance, std::uint32_t seed) {
-    const float broad = fractalNoise({angle * 3.1f + 9.0f, 0.5f}, seed), fine = fractalNoise({angle * 14.0f, 3.5f}, seed + 7u);
+    const float broad = fractalNoise({angle * 3.1f + 9.0f, 0.5f}, seed),
+                fine = fractalNoise({angle * 14.0f, 3.5f}, seed + 7u);
     return distance * (0.16f * (broad - 0.42f) + 0.025f * (fine - 0.5f));
 }
 
@@ -38,7 +41,8 @@ void addRidge(Draft& draft, const Ridge& ridge) {
         const float top = ridgeHeight(angle, ridge.distance, ridge.seed) + ridge.lift * ridge.distance;
         const float bottom = -0.11f * ridge.distance;
         const float distance = ridge.distance * (0.85f + 0.3f * up);
-        return kEye + glm::vec3(distance * std::sin(angle), -(bottom + (top - bottom) * up), distance * std::cos(angle));
+        return kEye + glm::vec3(distance * std::sin(angle), -(bottom + (top - bottom) * up),
+                                distance * std::cos(angle));
     };
     const float haze = 1.0f - std::exp(-ridge.distance / 560.0f);
     patch.material = [=](const glm::vec3& p, const glm::vec2& uv) {
@@ -46,8 +50,11 @@ void addRidge(Draft& draft, const Ridge& ridge) {
         const float fields = fractalNoise(at * 13.0f, ridge.seed + 31u),
                     woods = glm::smoothstep(0.50f, 0.58f, fractalNoise(at * 21.0f, ridge.seed + 53u));
         glm::vec3 colour = ridge.colour * (0.7f + 0.6f * fields);
-        colour = glm::mix(colour, 0.45f * glm::vec3(0.10f, 0.17f, 0.07f) + 0.15f * ridge.colour, 0.8f * woods);
-        const float light = 0.75f + 0.5f * fractalNoise(glm::vec2(at.x * 5.0f + 3.0f, uv.y * 2.0f), ridge.seed + 77u) - 0.2f * uv.y;
+        colour =
+            glm::mix(colour, 0.45f * glm::vec3(0.10f, 0.17f, 0.07f) + 0.15f * ridge.colour, 0.8f * woods);
+        const float light =
+            0.75f + 0.5f * fractalNoise(glm::vec2(at.x * 5.0f + 3.0f, uv.y * 2.0f), ridge.seed + 77u) -
+            0.2f * uv.y;
         return Material{glm::vec3(0.0f), glm::mix(1.25f * colour * light, kHaze, haze), 0.98f};
     };
     patch.size_m = {2.0f * half_angle * ridge.distance, 0.22f * ridge.distance};
@@ -82,14 +89,18 @@ void addFoliage(Draft& draft, const glm::vec3& centre, float radius, std::uint32
     Patch crown;
     crown.point = [=](const glm::vec2& uv) {
         const float longitude = 2.0f * kPi * uv.x, latitude = kPi * (uv.y - 0.5f);
-        const glm::vec3 unit(std::cos(latitude) * std::cos(longitude), std::sin(latitude), std::cos(latitude) * std::sin(longitude));
-        const float bump = 0.78f + 0.3f * fractalNoise({unit.x * 2.5f + unit.y, unit.z * 2.5f - unit.y}, seed);
+        const glm::vec3 unit(std::cos(latitude) * std::cos(longitude), std::sin(latitude),
+                             std::cos(latitude) * std::sin(longitude));
+        const float bump =
+            0.78f + 0.3f * fractalNoise({unit.x * 2.5f + unit.y, unit.z * 2.5f - unit.y}, seed);
         return centre + bump * radius * unit * glm::vec3(1.0f, 0.85f, 1.0f);
     };
     crown.material = [=](const glm::vec3& p, const glm::vec2& uv) {
-        const float up = (centre.y - p.y) / radius, leaves = fractalNoise(uv * glm::vec2(26.0f, 15.0f), seed + 5u);
+        const float up = (centre.y - p.y) / radius,
+                    leaves = fractalNoise(uv * glm::vec2(26.0f, 15.0f), seed + 5u);
         const float light = glm::clamp(0.30f + 0.34f * up + 1.0f * (leaves - 0.5f), 0.0f, 1.0f);
-        const glm::vec3 colour = glm::mix(glm::vec3(0.04f, 0.085f, 0.03f), glm::vec3(0.33f, 0.40f, 0.11f), light);
+        const glm::vec3 colour =
+            glm::mix(glm::vec3(0.04f, 0.085f, 0.03f), glm::vec3(0.33f, 0.40f, 0.11f), light);
         return Material{glm::vec3(0.0f), glm::mix(colour, kHaze, 1.0f - std::exp(-distance / 500.0f)), 0.90f};
     };
     crown.size_m = {4.6f * radius, 2.7f * radius};
@@ -101,11 +112,15 @@ void addFoliage(Draft& draft, const glm::vec3& centre, float radius, std::uint32
 // A stem and a handful of such balls round its top.
 void addTree(Draft& draft, const glm::vec3& foot, float height, std::uint32_t seed) {
     for (std::uint32_t i = 0; i < 8; ++i) {
-        const float angle = 2.39996f * static_cast<float>(i), out = i == 0 ? 0.0f : 0.20f + 0.08f * unitFloat(hash(seed, i));
-        const float up = 0.48f + 0.40f * static_cast<float>((i * 5) % 8) / 8.0f, radius = 0.15f + 0.07f * unitFloat(hash(seed, i + 100u));
+        const float angle = 2.39996f * static_cast<float>(i),
+                    out = i == 0 ? 0.0f : 0.20f + 0.08f * unitFloat(hash(seed, i));
+        const float up = 0.48f + 0.40f * static_cast<float>((i * 5) % 8) / 8.0f,
+                    radius = 0.15f + 0.07f * unitFloat(hash(seed, i + 100u));
         const float narrow = 1.25f - 0.8f * (up - 0.48f);
-        addFoliage(draft, foot + height * glm::vec3(narrow * out * std::cos(angle), -up, narrow * out * std::sin(angle)), radius * height,
-                   seed * 16u + i);
+        addFoliage(
+            draft,
+            foot + height * glm::vec3(narrow * out * std::cos(angle), -up, narrow * out * std::sin(angle)),
+            radius * height, seed * 16u + i);
     }
     Patch stem;
     stem.point = [=](const glm::vec2& uv) {
@@ -113,8 +128,10 @@ void addTree(Draft& draft, const glm::vec3& foot, float height, std::uint32_t se
         return foot + glm::vec3(radius * std::cos(angle), -0.55f * height * uv.y, radius * std::sin(angle));
     };
     stem.material = [](const glm::vec3& p, const glm::vec2& uv) {
-        return Material{glm::vec3(0.0f), glm::vec3(0.13f, 0.10f, 0.07f) * (0.6f + 0.8f * fractalNoise({uv.x * 9.0f, p.y * 3.0f}, 71u)),
-                        0.97f};
+        return Material{
+            glm::vec3(0.0f),
+            glm::vec3(0.13f, 0.10f, 0.07f) * (0.6f + 0.8f * fractalNoise({uv.x * 9.0f, p.y * 3.0f}, 71u)),
+            0.97f};
     };
     stem.size_m = {0.16f * height, 0.55f * height};
     stem.detail = detailFor(glm::distance(foot, kEye), 1.2f);
@@ -127,15 +144,17 @@ void addSky(Draft& draft) {
     constexpr float kDistance = 420.0f;
     patch.point = [](const glm::vec2& uv) {
         const float angle = 1.0f * (2.0f * uv.x - 1.0f), elevation = -0.06f + 0.72f * (1.0f - uv.y);
-        return kEye +
-               kDistance * glm::vec3(std::cos(elevation) * std::sin(angle), -std::sin(elevation), std::cos(elevation) * std::cos(angle));
+        return kEye + kDistance * glm::vec3(std::cos(elevation) * std::sin(angle), -std::sin(elevation),
+                                            std::cos(elevation) * std::cos(angle));
     };
     patch.material = [](const glm::vec3& p, const glm::vec2&) {
         const glm::vec3 d = glm::normalize(p - kEye);
         const float up = glm::clamp(-d.y / 0.32f, 0.0f, 1.0f);
-        glm::vec3 colour = glm::mix(glm::vec3(0.90f, 0.93f, 0.95f), glm::vec3(0.26f, 0.50f, 0.88f), std::sqrt(up));
+        glm::vec3 colour =
+            glm::mix(glm::vec3(0.90f, 0.93f, 0.95f), glm::vec3(0.26f, 0.50f, 0.88f), std::sqrt(up));
         const glm::vec2 cloud_at = glm::vec2(d.x, d.z) / (0.12f - d.y);
-        const float cloud = glm::smoothstep(0.50f, 0.72f, fractalNoise(cloud_at * glm::vec2(1.1f, 1.9f) + 4.0f, 61u));
+        const float cloud =
+            glm::smoothstep(0.50f, 0.72f, fractalNoise(cloud_at * glm::vec2(1.1f, 1.9f) + 4.0f, 61u));
         colour = glm::mix(colour, glm::vec3(1.25f, 1.2f, 1.14f), 0.85f * cloud);
         return Material{glm::vec3(0.0f), 1.15f * colour, 0.99f};
     };

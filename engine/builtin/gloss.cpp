@@ -68,9 +68,11 @@ std::array<float, 16> evaluateSh(const glm::vec3& d) {
             -0.59004359f * x * (xx - 3.0f * yy)};
 }
 
-std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& window, const glm::vec3& lamp) {
+std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& normal,
+                                       const glm::vec3& window, const glm::vec3& lamp) {
     static const Quadrature kQuadrature = makeQuadrature();
-    const glm::vec3 to_window = glm::normalize(window - point), to_lamp = glm::normalize(lamp - point), up(0.0f, -1.0f, 0.0f);
+    const glm::vec3 to_window = glm::normalize(window - point), to_lamp = glm::normalize(lamp - point),
+                    up(0.0f, -1.0f, 0.0f);
     const glm::vec3 to_skylight =
         // A second bright spot, behind the user's left shoulder.
         glm::normalize(glm::vec3(-0.75f, -0.75f, -0.6f));
@@ -81,7 +83,9 @@ std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& 
                                 glm::vec3(0.22f, 0.14f, 0.06f) * sharpLobe(mirrored, to_lamp) +
                                 glm::vec3(0.34f, 0.33f, 0.32f) * sharpLobe(mirrored, to_skylight) +
                                 glm::vec3(0.10f, 0.10f, 0.11f) * lobe(mirrored, up);
-        for (std::size_t k = 0; k < 16; ++k) { sh[k] += shine * (kQuadrature.weights[i] * kQuadrature.sh[i][k]); }
+        for (std::size_t k = 0; k < 16; ++k) {
+            sh[k] += shine * (kQuadrature.weights[i] * kQuadrature.sh[i][k]);
+        }
     }
     return sh;
 }

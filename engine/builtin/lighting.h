@@ -37,7 +37,8 @@ struct Light {
     glm::vec3 diffuse{0.0f};
     float sun = 0.0f;  // share of the sun not blocked by furniture, times the cosine
 };
-Light gatherLight(const Room& room, const std::vector<Occluder>& occluders, const glm::vec3& point, const glm::vec3& normal);
+Light gatherLight(const Room& room, const std::vector<Occluder>& occluders, const glm::vec3& point,
+                  const glm::vec3& normal);
 
 // The share of sunlight that the window lets through to `point`, with bars and penumbra.
 float sunThroughWindow(const Room& room, const glm::vec3& point);

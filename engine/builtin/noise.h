@@ -17,10 +17,14 @@ constexpr std::uint32_t hash(std::uint32_t value) {
     value *= 0xc2b2ae35u;
     return value ^ (value >> 16);
 }
-constexpr std::uint32_t hash(std::uint32_t a, std::uint32_t b) { return hash(a * 0x9e3779b9u ^ hash(b + 0x7f4a7c15u)); }
+constexpr std::uint32_t hash(std::uint32_t a, std::uint32_t b) {
+    return hash(a * 0x9e3779b9u ^ hash(b + 0x7f4a7c15u));
+}
 
 // In [0, 1), 24 bits.
-constexpr float unitFloat(std::uint32_t hashed) { return static_cast<float>(hashed >> 8) * (1.0f / 16777216.0f); }
+constexpr float unitFloat(std::uint32_t hashed) {
+    return static_cast<float>(hashed >> 8) * (1.0f / 16777216.0f);
+}
 
 // Smooth value noise in [0, 1], one unit per cell.
 inline float noise(const glm::vec2& at, std::uint32_t seed = 0) {
@@ -29,8 +33,11 @@ inline float noise(const glm::vec2& at, std::uint32_t seed = 0) {
     f = f * f * (3.0f - 2.0f * f);
     const auto x = static_cast<std::uint32_t>(static_cast<std::int32_t>(cell.x)),
                y = static_cast<std::uint32_t>(static_cast<std::int32_t>(cell.y));
-    const auto corner = [&](std::uint32_t dx, std::uint32_t dy) { return unitFloat(hash(hash(x + dx, y + dy), seed)); };
-    return glm::mix(glm::mix(corner(0, 0), corner(1, 0), f.x), glm::mix(corner(0, 1), corner(1, 1), f.x), f.y);
+    const auto corner = [&](std::uint32_t dx, std::uint32_t dy) {
+        return unitFloat(hash(hash(x + dx, y + dy), seed));
+    };
+    return glm::mix(glm::mix(corner(0, 0), corner(1, 0), f.x), glm::mix(corner(0, 1), corner(1, 1), f.x),
+                    f.y);
 }
 
 // Four octaves, in [0, 1].

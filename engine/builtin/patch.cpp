@@ -20,7 +20,9 @@ namespace {
 // background shines through the middle of four splats at opacity 0.96; smaller values show holes, larger ones
 // blur. A narrow strip (a bar, a leaf) would look fatter than it is: one splat across of 0.45 falls to half
 // its opacity at the strip's edges.
-float sigmaPerSpacing(std::uint64_t splats_across) { return splats_across == 1 ? 0.45f : splats_across == 2 ? 0.56f : 0.66f; }
+float sigmaPerSpacing(std::uint64_t splats_across) {
+    return splats_across == 1 ? 0.45f : splats_across == 2 ? 0.56f : 0.66f;
+}
 
 struct Frame {
     glm::vec3 point, along_u, along_v, normal;  // along_*: derivatives by u and v
@@ -29,14 +31,17 @@ struct Frame {
 Frame frameAt(const Patch& patch, const glm::vec2& uv) {
     constexpr float kStep = 1e-3f;
     const auto derive = [&](const glm::vec2& axis) {
-        const glm::vec2 before = glm::max(uv - kStep * axis, glm::vec2(0.0f)), after = glm::min(uv + kStep * axis, glm::vec2(1.0f));
+        const glm::vec2 before = glm::max(uv - kStep * axis, glm::vec2(0.0f)),
+                        after = glm::min(uv + kStep * axis, glm::vec2(1.0f));
         return (patch.point(after) - patch.point(before)) / glm::dot(after - before, axis);
     };
     Frame frame{patch.point(uv), derive({1.0f, 0.0f}), derive({0.0f, 1.0f}), {}};
     const glm::vec3 normal = glm::cross(frame.along_u, frame.along_v);
     const float length = glm::length(normal);
     frame.normal = length > 1e-12f ? normal / length : glm::vec3(0.0f, -1.0f, 0.0f);
-    if (patch.behind && glm::dot(frame.normal, frame.point - patch.behind(frame.point)) < 0.0f) { frame.normal = -frame.normal; }
+    if (patch.behind && glm::dot(frame.normal, frame.point - patch.behind(frame.point)) < 0.0f) {
+        frame.normal = -frame.normal;
+    }
     return frame;
 }
 
@@ -44,11 +49,15 @@ Frame frameAt(const Patch& patch, const glm::vec2& uv) {
 class LightGrid {
 public:
     LightGrid() = default;
-    LightGrid(const Patch& patch, const Room& room, const std::vector<Occluder>& occluders, std::uint64_t splats) {
+    LightGrid(const Patch& patch, const Room& room, const std::vector<Occluder>& occluders,
+              std::uint64_t splats) {
         if (!patch.lit) { return; }
         // No finer than the splats, and no finer than the softest shadows need.
-        const float spacing = std::sqrt(patch.size_m.x * patch.size_m.y / static_cast<float>(splats)), cell = std::max(0.05f, spacing);
-        const auto cells = [cell](float extent) { return std::clamp(static_cast<int>(std::lround(extent / cell)), 1, 96); };
+        const float spacing = std::sqrt(patch.size_m.x * patch.size_m.y / static_cast<float>(splats)),
+                    cell = std::max(0.05f, spacing);
+        const auto cells = [cell](float extent) {
+            return std::clamp(static_cast<int>(std::lround(extent / cell)), 1, 96);
+        };
         columns_ = cells(patch.size_m.x);
         rows_ = cells(patch.size_m.y);
         for (int row = 0; row < rows_; ++row) {
@@ -71,9 +80,11 @@ public:
         const glm::vec2 limit(static_cast<float>(columns_ - 1), static_cast<float>(rows_ - 1));
         const glm::vec2 place = glm::clamp(uv * (limit + 1.0f) - 0.5f, glm::vec2(0.0f), limit);
         const glm::vec2 cell = glm::floor(place), f = place - cell;
-        const int x = static_cast<int>(cell.x), y = static_cast<int>(cell.y), x1 = std::min(x + 1, columns_ - 1),
-                  y1 = std::min(y + 1, rows_ - 1);
-        const auto value = [&](int column, int row) { return values_[static_cast<std::size_t>(row * columns_ + column)]; };
+        const int x = static_cast<int>(cell.x), y = static_cast<int>(cell.y),
+                  x1 = std::min(x + 1, columns_ - 1), y1 = std::min(y + 1, rows_ - 1);
+        const auto value = [&](int column, int row) {
+            return values_[static_cast<std::size_t>(row * columns_ + column)];
+        };
         const Light a = value(x, y), b = value(x1, y), c = value(x, y1), d = value(x1, y1);
         return {glm::mix(glm::mix(a.diffuse, b.diffuse, f.x), glm::mix(c.diffuse, d.diffuse, f.x), f.y),
                 glm::mix(glm::mix(a.sun, b.sun, f.x), glm::mix(c.sun, d.sun, f.x), f.y)};
@@ -91,7 +102,8 @@ struct Rows {
 
 Rows layOutRows(const Patch& patch, std::uint64_t count) {
     const double wanted = std::sqrt(static_cast<double>(count) * patch.size_m.y / patch.size_m.x);
-    const auto rows = static_cast<std::size_t>(std::clamp<double>(std::round(wanted), 1.0, static_cast<double>(count)));
+    const auto rows =
+        static_cast<std::size_t>(std::clamp<double>(std::round(wanted), 1.0, static_cast<double>(count)));
     std::vector<double> ends(rows);
     double sum = 0.0;
     for (std::size_t row = 0; row < rows; ++row) {
@@ -102,7 +114,8 @@ Rows layOutRows(const Patch& patch, std::uint64_t count) {
     }
     Rows result{{0}};
     for (const double end : ends) {
-        result.starts.push_back(static_cast<std::uint64_t>(std::llround(end / sum * static_cast<double>(count))));
+        result.starts.push_back(
+            static_cast<std::uint64_t>(std::llround(end / sum * static_cast<double>(count))));
     }
     return result;
 }
@@ -113,18 +126,28 @@ glm::quat makeRotation(const Frame& frame, const glm::vec3& t_u, glm::vec3& t_v)
     if (length > 1e-9f) {
         t_v /= length;
     } else {
-        t_v = glm::normalize(glm::cross(std::abs(t_u.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f), t_u));
+        t_v = glm::normalize(glm::cross(
+            std::abs(t_u.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f), t_u));
     }
     return glm::normalize(glm::quat_cast(glm::mat3(t_u, t_v, glm::cross(t_u, t_v))));
 }
 
 class PatchWriter {
 public:
-    PatchWriter(const Patch& patch, const Room& room, const LightGrid& grid, std::uint32_t seed, std::uint64_t count, int subsamples)
-        : patch_(patch), room_(room), grid_(grid), rows_(layOutRows(patch, count)), seed_(seed), subsamples_(subsamples) {}
+    PatchWriter(const Patch& patch, const Room& room, const LightGrid& grid, std::uint32_t seed,
+                std::uint64_t count, int subsamples)
+        : patch_(patch),
+          room_(room),
+          grid_(grid),
+          rows_(layOutRows(patch, count)),
+          seed_(seed),
+          subsamples_(subsamples) {}
 
     void write(Scene& scene, std::uint64_t first, std::uint64_t begin, std::uint64_t end) const {
-        auto row = static_cast<std::size_t>(std::upper_bound(rows_.starts.begin(), rows_.starts.end(), begin) - rows_.starts.begin()) - 1;
+        auto row =
+            static_cast<std::size_t>(std::upper_bound(rows_.starts.begin(), rows_.starts.end(), begin) -
+                                     rows_.starts.begin()) -
+            1;
         for (std::uint64_t i = begin; i < end; ++i) {
             while (i >= rows_.starts[row + 1]) { ++row; }
             writeSplat(scene, first + i, i, row);
@@ -139,12 +162,14 @@ private:
         // visible grid.
         const std::uint32_t chance = hash(static_cast<std::uint32_t>(i), seed_);
         const glm::vec2 jitter(unitFloat(chance) - 0.5f, unitFloat(hash(chance)) - 0.5f);
-        const glm::vec2 place(static_cast<float>(i - rows_.starts[row]) + 0.5f + (row % 2 == 0 ? 0.2f : -0.2f),
-                              static_cast<float>(row) + 0.5f);
+        const glm::vec2 place(
+            static_cast<float>(i - rows_.starts[row]) + 0.5f + (row % 2 == 0 ? 0.2f : -0.2f),
+            static_cast<float>(row) + 0.5f);
         // The outermost splats move in by a sixteenth of a cell: half of a splat's opacity reaches 0.3 cells
         // past the edge otherwise.
         const glm::vec2 even = (place + 0.16f * jitter) * cell,
-                        uv = glm::clamp(0.5f + (even - 0.5f) * (1.0f - 0.12f * cell), glm::vec2(0.0f), glm::vec2(1.0f));
+                        uv = glm::clamp(0.5f + (even - 0.5f) * (1.0f - 0.12f * cell), glm::vec2(0.0f),
+                                        glm::vec2(1.0f));
 
         const Frame frame = frameAt(patch_, uv);
         const float length_u = glm::length(frame.along_u);
@@ -153,7 +178,8 @@ private:
         scene.rotations[target] = makeRotation(frame, t_u, t_v);
         scene.positions[target] = frame.point;
         const glm::vec2 spacing = cell * glm::vec2(length_u, std::abs(glm::dot(frame.along_v, t_v)));
-        const glm::vec2 per_spacing(sigmaPerSpacing(rows_.starts[row + 1] - rows_.starts[row]), sigmaPerSpacing(rows_.starts.size() - 1));
+        const glm::vec2 per_spacing(sigmaPerSpacing(rows_.starts[row + 1] - rows_.starts[row]),
+                                    sigmaPerSpacing(rows_.starts.size() - 1));
         scene.scales[target] = glm::max(per_spacing * spacing, glm::vec2(1e-5f));
 
         float opacity = 0.0f;
@@ -172,13 +198,16 @@ private:
         glm::vec3 sum(0.0f);
         for (int y = 0; y < subsamples_; ++y) {
             for (int x = 0; x < subsamples_; ++x) {
-                const glm::vec2 offset =
-                    (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) / static_cast<float>(subsamples_) - 0.5f;
+                const glm::vec2 offset = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
+                                             static_cast<float>(subsamples_) -
+                                         0.5f;
                 const glm::vec2 step = glm::clamp(uv + offset * cell, glm::vec2(0.0f), glm::vec2(1.0f)) - uv;
                 const glm::vec3 point = frame.point + step.x * frame.along_u + step.y * frame.along_v;
                 const Material material = patch_.material(point, uv + step);
                 glm::vec3 incident = light.diffuse;
-                if (light.sun > 0.0f) { incident += light.sun * sunThroughWindow(room_, point) * sunColour(); }
+                if (light.sun > 0.0f) {
+                    incident += light.sun * sunThroughWindow(room_, point) * sunColour();
+                }
                 sum += material.emission + material.albedo * incident;
                 opacity += material.opacity;
             }
@@ -192,7 +221,9 @@ private:
         const glm::vec3 window(0.5f * (room_.window_min + room_.window_max), room_.max.z);
         const std::array<glm::vec3, 16> gloss = projectGloss(frame.point, frame.normal, window, room_.lamp);
         for (int k = 0; k < 16; ++k) {
-            for (int channel = 0; channel < 3; ++channel) { sh[3 * k + channel] += gloss[static_cast<std::size_t>(k)][channel]; }
+            for (int channel = 0; channel < 3; ++channel) {
+                sh[3 * k + channel] += gloss[static_cast<std::size_t>(k)][channel];
+            }
         }
     }
 
@@ -208,12 +239,13 @@ private:
 template <typename Work>
 void forAll(std::size_t count, const Work& work, const Progress& progress, double from, double to) {
     const auto caller = std::this_thread::get_id();
-    forBlocks(count, 1, static_cast<int>(std::thread::hardware_concurrency()), [&](std::size_t i, std::size_t end) {
-        work(i);
-        if (progress && std::this_thread::get_id() == caller) {
-            progress(from + (to - from) * static_cast<double>(end) / static_cast<double>(count));
-        }
-    });
+    forBlocks(count, 1, static_cast<int>(std::thread::hardware_concurrency()),
+              [&](std::size_t i, std::size_t end) {
+                  work(i);
+                  if (progress && std::this_thread::get_id() == caller) {
+                      progress(from + (to - from) * static_cast<double>(end) / static_cast<double>(count));
+                  }
+              });
 }
 
 // True if a patch lies in a wall, floor or ceiling and faces out of the room: the back of a picture frame,
@@ -249,7 +281,8 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
     for (const Patch& patch : patches_) { total += weightOf(patch, room); }
     for (const Patch& patch : patches_) {
         running += weightOf(patch, room);
-        starts.push_back(static_cast<std::uint64_t>(std::llround(running / total * static_cast<double>(count))));
+        starts.push_back(
+            static_cast<std::uint64_t>(std::llround(running / total * static_cast<double>(count))));
     }
     starts.back() = count;
 
@@ -257,7 +290,9 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
     forAll(
         patches_.size(),
         [&](std::size_t i) {
-            if (starts[i + 1] > starts[i]) { grids[i] = LightGrid(patches_[i], room, occluders_, starts[i + 1] - starts[i]); }
+            if (starts[i + 1] > starts[i]) {
+                grids[i] = LightGrid(patches_[i], room, occluders_, starts[i + 1] - starts[i]);
+            }
         },
         progress, 0.0, 0.3);
 
@@ -272,12 +307,16 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
     for (std::size_t i = 0; i < patches_.size(); ++i) {
         const std::uint64_t splats = starts[i + 1] - starts[i];
         if (splats == 0) { continue; }
-        const PatchWriter writer(patches_[i], room, grids[i], static_cast<std::uint32_t>(i), splats, subsamples);
+        const PatchWriter writer(patches_[i], room, grids[i], static_cast<std::uint32_t>(i), splats,
+                                 subsamples);
         constexpr std::uint64_t kChunk = 16384;
         const auto write = [&](std::size_t chunk) {
-            writer.write(scene, starts[i], chunk * kChunk, std::min<std::uint64_t>(splats, (chunk + 1) * kChunk));
+            writer.write(scene, starts[i], chunk * kChunk,
+                         std::min<std::uint64_t>(splats, (chunk + 1) * kChunk));
         };
-        const auto share = [&](std::uint64_t done) { return 0.3 + 0.7 * static_cast<double>(done) / static_cast<double>(count); };
+        const auto share = [&](std::uint64_t done) {
+            return 0.3 + 0.7 * static_cast<double>(done) / static_cast<double>(count);
+        };
         if (splats <= kChunk) {
             write(0);
             if (progress && i % 16 == 0) { progress(share(starts[i + 1])); }

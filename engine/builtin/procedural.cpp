@@ -31,14 +31,17 @@ View viewFromOrigin() { return {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.
 
 constexpr std::uint64_t kWallSplats = 121 * 121;
 constexpr std::array<Entry, 6> kEntries{{
-    {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 40'000'000, builtin::makeAtelier, builtin::atelierView},
+    {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 40'000'000, builtin::makeAtelier,
+     builtin::atelierView},
     {"one-splat", "one disc", 1, 1, 1, makeFixed<builtin::makeOneSplat>, viewFromOrigin},
-    {"slanted-wall", "a wall at 45 degrees", 41 * 41, 41 * 41, 41 * 41, makeFixed<builtin::makeSlantedWall>, viewFromOrigin},
-    {"two-layers", "a translucent disc in front of another", 2, 2, 2, makeFixed<builtin::makeTwoLayers>, viewFromOrigin},
-    {"step-edge", "a near wall that ends in front of a far one", 30 * 61 + kWallSplats, 30 * 61 + kWallSplats, 30 * 61 + kWallSplats,
-     makeFixed<builtin::makeStepEdge>, viewFromOrigin},
-    {"fence", "thin bars in front of a wall", 9 * 81 + kWallSplats, 9 * 81 + kWallSplats, 9 * 81 + kWallSplats,
-     makeFixed<builtin::makeFence>, viewFromOrigin},
+    {"slanted-wall", "a wall at 45 degrees", 41 * 41, 41 * 41, 41 * 41, makeFixed<builtin::makeSlantedWall>,
+     viewFromOrigin},
+    {"two-layers", "a translucent disc in front of another", 2, 2, 2, makeFixed<builtin::makeTwoLayers>,
+     viewFromOrigin},
+    {"step-edge", "a near wall that ends in front of a far one", 30 * 61 + kWallSplats, 30 * 61 + kWallSplats,
+     30 * 61 + kWallSplats, makeFixed<builtin::makeStepEdge>, viewFromOrigin},
+    {"fence", "thin bars in front of a wall", 9 * 81 + kWallSplats, 9 * 81 + kWallSplats,
+     9 * 81 + kWallSplats, makeFixed<builtin::makeFence>, viewFromOrigin},
 }};
 
 const Entry* findEntry(std::string_view name) {
@@ -70,13 +73,17 @@ Scene makeBuiltin(const std::string& source, std::uint64_t splats, const Progres
     const Entry* entry = findEntry(source);
     if (entry == nullptr) {
         std::string names;
-        for (const Entry& known : kEntries) { names += (names.empty() ? "" : ", ") + std::string(known.name); }
+        for (const Entry& known : kEntries) {
+            names += (names.empty() ? "" : ", ") + std::string(known.name);
+        }
         fail("{}: no such built-in scene, expected one of {}", source, names);
     }
     if (splats == 0) { splats = entry->default_splats; }
-    check(splats >= entry->min_splats && splats <= entry->max_splats, "{}: {} splats asked for, expected {}", source, splats,
-          entry->min_splats == entry->max_splats ? fmt::format("{}", entry->min_splats)
-                                                 : fmt::format("{} to {}", entry->min_splats, entry->max_splats));
+    check(splats >= entry->min_splats && splats <= entry->max_splats, "{}: {} splats asked for, expected {}",
+          source, splats,
+          entry->min_splats == entry->max_splats
+              ? fmt::format("{}", entry->min_splats)
+              : fmt::format("{} to {}", entry->min_splats, entry->max_splats));
     Scene scene = entry->make(splats, progress);
     scene.name = std::string(kPrefix) + entry->name;
     return scene;

@@ -22,7 +22,8 @@ void addQuad(Draft& draft, const Quad& quad, const MaterialAt& material, float d
 
 // The same without the rectangles `holes` (min u, min v, max u, max v in the quad's unit square): surfaces
 // that lie on it would otherwise mix with it, since splats are sorted by their centres.
-void addQuadAround(Draft& draft, const Quad& quad, std::span<const glm::vec4> holes, const MaterialAt& material, float detail);
+void addQuadAround(Draft& draft, const Quad& quad, std::span<const glm::vec4> holes,
+                   const MaterialAt& material, float detail);
 
 // A box turned by yaw about the vertical, and an occluder like it.
 struct Box {
@@ -33,13 +34,16 @@ struct Box {
 void addBox(Draft& draft, const Box& box, const MaterialAt& material, float detail, bool occludes = true);
 
 // From an ellipsoid (boxiness 2) to a rounded box (6), and an occluder like it.
-void addCushion(Draft& draft, const Box& box, float boxiness, const MaterialAt& material, float detail, bool occludes = true);
+void addCushion(Draft& draft, const Box& box, float boxiness, const MaterialAt& material, float detail,
+                bool occludes = true);
 
 // The profile (radius, height above `foot`) turned about the vertical; corners are smoothed.
-Patch& addRevolution(Draft& draft, const glm::vec3& foot, std::vector<glm::vec2> profile, const MaterialAt& material, float detail);
+Patch& addRevolution(Draft& draft, const glm::vec3& foot, std::vector<glm::vec2> profile,
+                     const MaterialAt& material, float detail);
 
 // A thin upright or slanted rod.
-void addRod(Draft& draft, const glm::vec3& from, const glm::vec3& to, float radius, const MaterialAt& material, float detail);
+void addRod(Draft& draft, const glm::vec3& from, const glm::vec3& to, float radius,
+            const MaterialAt& material, float detail);
 
 // A leaf from `base` along `direction`, drooping by `droop` of its length, `width` across; `side` is the
 // direction across.

@@ -26,7 +26,9 @@ std::vector<float> sortedSamples(std::span<const float> numbers) {
         samples.reserve(kMostSamples + 2);
         const auto [least, largest] = std::ranges::minmax(numbers);
         samples = {least, largest};
-        for (std::size_t i = 0; i < kMostSamples; ++i) { samples.push_back(numbers[i * numbers.size() / kMostSamples]); }
+        for (std::size_t i = 0; i < kMostSamples; ++i) {
+            samples.push_back(numbers[i * numbers.size() / kMostSamples]);
+        }
     }
     std::ranges::sort(samples);
     return samples;
@@ -44,14 +46,18 @@ std::vector<std::size_t> startEnds(const std::vector<float>& sorted, std::size_t
         weights[i] = std::cbrt(width * width);
     }
     for (int round = 0; round < 30; ++round) {
-        const double most = std::accumulate(weights.begin(), weights.end(), 0.0) * kMostPerCell / static_cast<double>(size);
+        const double most =
+            std::accumulate(weights.begin(), weights.end(), 0.0) * kMostPerCell / static_cast<double>(size);
         for (double& weight : weights) { weight = std::min(weight, most); }
     }
     std::vector<double> sums(cells + 1, 0.0);
     std::partial_sum(weights.begin(), weights.end(), sums.begin() + 1);
     std::vector<std::size_t> ends(size, sorted.size());
     for (std::size_t k = 0, cell = 0; k + 1 < size; ++k) {
-        while (cell < cells && sums[cell] * static_cast<double>(size) < sums[cells] * static_cast<double>(k + 1)) { ++cell; }
+        while (cell < cells &&
+               sums[cell] * static_cast<double>(size) < sums[cells] * static_cast<double>(k + 1)) {
+            ++cell;
+        }
         ends[k] = edge(cell);
     }
     return ends;
@@ -66,18 +72,23 @@ std::vector<float> findValues(std::span<const float> numbers, std::size_t size) 
 
     values.assign(size, 0.0f);
     std::vector<double> sums(sorted.size() + 1, 0.0);
-    for (std::size_t i = 0; i < sorted.size(); ++i) { sums[i + 1] = sums[i] + static_cast<double>(sorted[i]); }
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        sums[i + 1] = sums[i] + static_cast<double>(sorted[i]);
+    }
     std::vector<std::size_t> ends = startEnds(sorted, size);
     for (int iteration = 0; iteration < kIterations; ++iteration) {
         for (std::size_t k = 0, begin = 0; k < size; begin = std::max(begin, ends[k]), ++k) {
             // A cluster without numbers waits where the next one begins.
-            values[k] = begin < ends[k] ? static_cast<float>((sums[ends[k]] - sums[begin]) / static_cast<double>(ends[k] - begin))
-                                        : sorted[std::min(begin, sorted.size() - 1)];
+            values[k] =
+                begin < ends[k]
+                    ? static_cast<float>((sums[ends[k]] - sums[begin]) / static_cast<double>(ends[k] - begin))
+                    : sorted[std::min(begin, sorted.size() - 1)];
         }
         bool moved = false;
         for (std::size_t k = 0; k + 1 < size; ++k) {
             const float border = 0.5f * values[k] + 0.5f * values[k + 1];
-            const auto end = static_cast<std::size_t>(std::upper_bound(sorted.begin(), sorted.end(), border) - sorted.begin());
+            const auto end = static_cast<std::size_t>(std::upper_bound(sorted.begin(), sorted.end(), border) -
+                                                      sorted.begin());
             moved = moved || end != ends[k];
             ends[k] = end;
         }
@@ -90,7 +101,8 @@ std::vector<float> findValues(std::span<const float> numbers, std::size_t size) 
 }  // namespace
 
 Codebook::Codebook(std::span<const float> numbers, std::optional<float> apart) {
-    std::vector<float> values = numbers.empty() ? std::vector<float>{apart.value_or(0.0f)} : findValues(numbers, apart ? kSize - 1 : kSize);
+    std::vector<float> values = numbers.empty() ? std::vector<float>{apart.value_or(0.0f)}
+                                                : findValues(numbers, apart ? kSize - 1 : kSize);
     if (apart && !numbers.empty()) { values.insert(values.begin(), *apart); }
     values.resize(kSize, values.back());
     std::ranges::copy(values, values_.begin());
@@ -98,7 +110,8 @@ Codebook::Codebook(std::span<const float> numbers, std::optional<float> apart) {
 }
 
 std::uint8_t Codebook::nearest(float number) const {
-    return static_cast<std::uint8_t>(std::lower_bound(borders_.begin(), borders_.end(), number) - borders_.begin());
+    return static_cast<std::uint8_t>(std::lower_bound(borders_.begin(), borders_.end(), number) -
+                                     borders_.begin());
 }
 
 }  // namespace binosplat

@@ -18,11 +18,13 @@ namespace {
 constexpr std::uint64_t kChunkSplats = 256;
 static_assert(kChunkSplats == StoredBlock::kRows);  // a block is a chunk
 
-constexpr std::array<const char*, 18> kBoundNames{"min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",
-                                                  "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
-                                                  "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
+constexpr std::array<const char*, 18> kBoundNames{
+    "min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",
+    "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
+    "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
 constexpr std::size_t kBoundsWithoutColour = 12;
-constexpr std::array<const char*, 4> kWordNames{"packed_position", "packed_rotation", "packed_scale", "packed_color"};
+constexpr std::array<const char*, 4> kWordNames{"packed_position", "packed_rotation", "packed_scale",
+                                                "packed_color"};
 
 using Bounds = std::array<float, kBoundNames.size()>;
 
@@ -38,21 +40,24 @@ Fields findFields(const InputFile& file, const ply::Element& element, ply::Type 
     Fields fields;
     fields.offsets.assign(names.size(), SIZE_MAX);
     for (const ply::Property& property : element.properties) {
-        check(!property.is_list, "{}: header: property {} of element {} is a list, expected scalars only", file.name(), property.name,
-              element.name);
+        check(!property.is_list, "{}: header: property {} of element {} is a list, expected scalars only",
+              file.name(), property.name, element.name);
         const auto name = std::find(names.begin(), names.end(), property.name);
         if (name != names.end()) {
             std::size_t& offset = fields.offsets[static_cast<std::size_t>(name - names.begin())];
-            check(offset == SIZE_MAX, "{}: header: property {} of element {} twice", file.name(), property.name, element.name);
-            check(property.type == type, "{}: header: property {} of element {} has another type, expected {}", file.name(), property.name,
-                  element.name, type_name);
+            check(offset == SIZE_MAX, "{}: header: property {} of element {} twice", file.name(),
+                  property.name, element.name);
+            check(property.type == type,
+                  "{}: header: property {} of element {} has another type, expected {}", file.name(),
+                  property.name, element.name, type_name);
             offset = fields.row_bytes;
         }
         fields.row_bytes += ply::typeBytes(property.type);
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
-        check(fields.offsets[i] != SIZE_MAX, "{}: header: element {} has no property {}, expected the ones of a compressed PLY",
-              file.name(), element.name, names[i]);
+        check(fields.offsets[i] != SIZE_MAX,
+              "{}: header: element {} has no property {}, expected the ones of a compressed PLY", file.name(),
+              element.name, names[i]);
     }
     return fields;
 }
@@ -65,33 +70,40 @@ struct ChunkLayout {
 };
 
 bool hasProperty(const ply::Element& element, std::string_view name) {
-    return std::any_of(element.properties.begin(), element.properties.end(), [&](const ply::Property& p) { return p.name == name; });
+    return std::any_of(element.properties.begin(), element.properties.end(),
+                       [&](const ply::Property& p) { return p.name == name; });
 }
 
 ChunkLayout planElements(const InputFile& file, const ply::Header& header) {
     check(header.encoding == ply::Encoding::kLittleEndian,
           "{}: header: a compressed PLY in another encoding, expected binary_little_endian", file.name());
     const std::vector<ply::Element>& elements = header.elements;
-    const bool known = (elements.size() == 2 || (elements.size() == 3 && elements[2].name == "sh")) && elements[0].name == "chunk" &&
-                       elements[1].name == "vertex";
-    check(known, "{}: header: other elements than those of a compressed PLY, expected chunk, vertex and perhaps sh, in this order",
+    const bool known = (elements.size() == 2 || (elements.size() == 3 && elements[2].name == "sh")) &&
+                       elements[0].name == "chunk" && elements[1].name == "vertex";
+    check(known,
+          "{}: header: other elements than those of a compressed PLY, expected chunk, vertex and perhaps sh, "
+          "in this order",
           file.name());
 
     ChunkLayout layout;
     layout.chunks = elements[0].count;
     layout.splats = elements[1].count;
-    const std::size_t bound_count = hasProperty(elements[0], "min_r") ? kBoundNames.size() : kBoundsWithoutColour;
-    const std::vector<std::string> bound_names(kBoundNames.begin(), kBoundNames.begin() + static_cast<std::ptrdiff_t>(bound_count));
+    const std::size_t bound_count =
+        hasProperty(elements[0], "min_r") ? kBoundNames.size() : kBoundsWithoutColour;
+    const std::vector<std::string> bound_names(
+        kBoundNames.begin(), kBoundNames.begin() + static_cast<std::ptrdiff_t>(bound_count));
     const std::vector<std::string> word_names(kWordNames.begin(), kWordNames.end());
     layout.bounds = findFields(file, elements[0], ply::Type::kFloat32, "float", bound_names);
     layout.words = findFields(file, elements[1], ply::Type::kUint32, "uint", word_names);
     check(layout.chunks == layout.splats / kChunkSplats + (layout.splats % kChunkSplats != 0),
-          "{}: header: {} chunks for {} splats, expected one for each {} splats", file.name(), layout.chunks, layout.splats, kChunkSplats);
+          "{}: header: {} chunks for {} splats, expected one for each {} splats", file.name(), layout.chunks,
+          layout.splats, kChunkSplats);
     if (elements.size() == 3) {
         const std::size_t rest_count = elements[2].properties.size();
-        check(rest_count == 9 || rest_count == 24 || rest_count == 45, "{}: header: element sh has {} properties, expected 9, 24 or 45",
-              file.name(), rest_count);
-        check(elements[2].count == layout.splats, "{}: header: {} rows of element sh for {} splats, expected one each", file.name(),
+        check(rest_count == 9 || rest_count == 24 || rest_count == 45,
+              "{}: header: element sh has {} properties, expected 9, 24 or 45", file.name(), rest_count);
+        check(elements[2].count == layout.splats,
+              "{}: header: {} rows of element sh for {} splats, expected one each", file.name(),
               elements[2].count, layout.splats);
         std::vector<std::string> rest_names;
         for (std::size_t i = 0; i < rest_count; ++i) { rest_names.push_back(fmt::format("f_rest_{}", i)); }
@@ -101,15 +113,18 @@ ChunkLayout planElements(const InputFile& file, const ply::Header& header) {
     // Row sizes are under 1 MiB (the header's limit), so only the counts can be absurd.
     const std::uint64_t left = file.bytesLeft();
     const std::uint64_t per_splat = layout.words.row_bytes + layout.rest.row_bytes;
-    check(layout.splats <= left / per_splat && layout.chunks <= (left - layout.splats * per_splat) / layout.bounds.row_bytes,
-          "{}: data: {} bytes are left for {} chunks of {} bytes and {} splats of {} bytes each", file.name(), left, layout.chunks,
-          layout.bounds.row_bytes, layout.splats, per_splat);
+    check(layout.splats <= left / per_splat &&
+              layout.chunks <= (left - layout.splats * per_splat) / layout.bounds.row_bytes,
+          "{}: data: {} bytes are left for {} chunks of {} bytes and {} splats of {} bytes each", file.name(),
+          left, layout.chunks, layout.bounds.row_bytes, layout.splats, per_splat);
     return layout;
 }
 
-std::span<const std::byte> readRow(InputFile& file, const Fields& fields, const char* element, std::uint64_t row) {
+std::span<const std::byte> readRow(InputFile& file, const Fields& fields, const char* element,
+                                   std::uint64_t row) {
     const std::span<const std::byte> bytes = file.readBlock(fields.row_bytes);
-    check(bytes.size() == fields.row_bytes, "{}: data: ends in row {} of element {}", file.name(), row, element);
+    check(bytes.size() == fields.row_bytes, "{}: data: ends in row {} of element {}", file.name(), row,
+          element);
     return bytes;
 }
 
@@ -118,8 +133,12 @@ std::vector<Bounds> readBounds(InputFile& file, const ChunkLayout& layout) {
     for (std::uint64_t chunk = 0; chunk < layout.chunks; ++chunk) {
         const std::span<const std::byte> row = readRow(file, layout.bounds, "chunk", chunk);
         Bounds& bounds = all[chunk];
-        for (std::size_t i = 0; i < 3; ++i) { bounds[kBoundsWithoutColour + i] = 0.0f, bounds[kBoundsWithoutColour + 3 + i] = 1.0f; }
-        for (std::size_t i = 0; i < layout.bounds.offsets.size(); ++i) { bounds[i] = loadLittle<float>(row, layout.bounds.offsets[i]); }
+        for (std::size_t i = 0; i < 3; ++i) {
+            bounds[kBoundsWithoutColour + i] = 0.0f, bounds[kBoundsWithoutColour + 3 + i] = 1.0f;
+        }
+        for (std::size_t i = 0; i < layout.bounds.offsets.size(); ++i) {
+            bounds[i] = loadLittle<float>(row, layout.bounds.offsets[i]);
+        }
     }
     return all;
 }
@@ -131,7 +150,9 @@ float unpack(std::uint32_t word, int shift, int bits) {
 }
 
 // Bits from the top: x 11, y 10, z 11.
-std::array<float, 3> unpackVector(std::uint32_t word) { return {unpack(word, 21, 11), unpack(word, 11, 10), unpack(word, 0, 11)}; }
+std::array<float, 3> unpackVector(std::uint32_t word) {
+    return {unpack(word, 21, 11), unpack(word, 11, 10), unpack(word, 0, 11)};
+}
 
 using Words = std::array<std::uint32_t, kWordNames.size()>;
 
@@ -145,13 +166,15 @@ void unpackSplat(const Words& words, const Bounds& bounds, StoredBlock& block, s
         const int offset = static_cast<int>(axis);
         put(kStoredX + offset, between(0, axis, position[axis]));
         put(kStoredScale0 + offset, between(6, axis, scale[axis]));
-        put(kStoredDc0 + offset, storedColour(between(kBoundsWithoutColour, axis, unpack(words[3], 24 - 8 * offset, 8))));
+        put(kStoredDc0 + offset,
+            storedColour(between(kBoundsWithoutColour, axis, unpack(words[3], 24 - 8 * offset, 8))));
     }
     put(kStoredOpacity, storedOpacity(unpack(words[3], 0, 8)));
     // Two bits for the largest component (w, x, y, z), then ten for each of the others, from -1/sqrt(2) to
     // 1/sqrt(2).
     const auto component = [&](int shift) { return (unpack(words[1], shift, 10) - 0.5f) * 1.41421356f; };
-    const std::array<float, 4> rotation = fromSmallestThree(words[1] >> 30, {component(20), component(10), component(0)});
+    const std::array<float, 4> rotation =
+        fromSmallestThree(words[1] >> 30, {component(20), component(10), component(0)});
     for (std::size_t i = 0; i < 4; ++i) { put(kStoredRot0 + static_cast<int>(i), rotation[i]); }
 }
 
@@ -169,7 +192,8 @@ bool isCompressedPly(InputFile& file) {
     constexpr std::size_t kHeaderReach = std::size_t{1} << 16;
     const std::string_view start = file.peek(kHeaderReach);
     const std::string_view header = start.substr(0, start.find("end_header"));
-    return header.find(" packed_position\n") != std::string_view::npos || header.find(" packed_position\r\n") != std::string_view::npos;
+    return header.find(" packed_position\n") != std::string_view::npos ||
+           header.find(" packed_position\r\n") != std::string_view::npos;
 }
 
 Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
@@ -187,14 +211,18 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
     SceneBuilder builder(file.name(), layout.splats, layout.sh_degree, true);
     StoredBlock block;
     for (std::uint64_t chunk = 0; chunk < layout.chunks; ++chunk) {
-        if (progress && chunk % 128 == 0) { progress(static_cast<double>(chunk) / static_cast<double>(layout.chunks)); }
+        if (progress && chunk % 128 == 0) {
+            progress(static_cast<double>(chunk) / static_cast<double>(layout.chunks));
+        }
         const std::uint64_t first = chunk * kChunkSplats;
         block.rows = static_cast<std::size_t>(std::min(kChunkSplats, layout.splats - first));
         for (std::size_t row = 0; row < block.rows; ++row) {
             unpackSplat(all_words[first + row], bounds[chunk], block, row);
             if (layout.sh_degree == 0) { continue; }
             const std::span<const std::byte> rest = readRow(file, layout.rest, "sh", first + row);
-            for (std::size_t i = 0; i < layout.rest.offsets.size(); ++i) { block.rest(row)[i] = unpackRest(rest[layout.rest.offsets[i]]); }
+            for (std::size_t i = 0; i < layout.rest.offsets.size(); ++i) {
+                block.rest(row)[i] = unpackRest(rest[layout.rest.offsets[i]]);
+            }
         }
         builder.append(block);
     }
@@ -202,7 +230,9 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
     Scene scene = builder.finish(notes);
     scene.antialiased = header.antialiased;
     scene.vertical_axis = header.vertical_axis;
-    if (header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[header.vertical_axis]); }
+    if (header.vertical_axis >= 0) {
+        notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[header.vertical_axis]);
+    }
     return scene;
 }
 

@@ -32,7 +32,10 @@ bool holdsLogarithms(const GltfDocument& document) {
     std::vector<float> scales;
     for (const GltfSplats& part : document.parts) {
         for (std::uint64_t first = 0; first < part.count(); first += StoredBlock::kRows) {
-            part.scale.read(first, static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, part.count() - first)), scales);
+            part.scale.read(
+                first,
+                static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, part.count() - first)),
+                scales);
             if (std::ranges::any_of(scales, [](float scale) { return scale < 0.0f; })) { return true; }
         }
     }
@@ -50,10 +53,12 @@ glm::dvec3 findOrigin(const GltfDocument& document) {
     for (const GltfSplats& part : document.parts) {
         // Weighted, so that small parts far away do not shift the rest.
         const double share = static_cast<double>(part.count()) / std::max(all, 1.0);
-        const auto rows = std::min(static_cast<std::size_t>(part.count()), static_cast<std::size_t>(std::ceil(share * kMostSamples)));
+        const auto rows = std::min(static_cast<std::size_t>(part.count()),
+                                   static_cast<std::size_t>(std::ceil(share * kMostSamples)));
         part.position.read(0, rows, values);
         for (std::size_t row = 0; row < rows; ++row) {
-            const glm::dvec4 place = part.world_from_node * glm::dvec4(values[3 * row], values[3 * row + 1], values[3 * row + 2], 1.0);
+            const glm::dvec4 place = part.world_from_node * glm::dvec4(values[3 * row], values[3 * row + 1],
+                                                                       values[3 * row + 2], 1.0);
             for (int axis = 0; axis < 3; ++axis) {
                 if (!std::isfinite(place[axis])) { continue; }
                 places[static_cast<std::size_t>(axis)].push_back(place[axis]);
@@ -63,8 +68,11 @@ glm::dvec3 findOrigin(const GltfDocument& document) {
     }
     glm::dvec3 origin(0.0);
     for (int axis = 0; axis < 3; ++axis) {
-        std::vector<double>&place = places[static_cast<std::size_t>(axis)], &move = moves[static_cast<std::size_t>(axis)];
-        if (!place.empty() && originAbout(findQuantile(move, 0.5)) != 0.0) { origin[axis] = originAbout(findQuantile(place, 0.5)); }
+        std::vector<double>&place = places[static_cast<std::size_t>(axis)],
+        &move = moves[static_cast<std::size_t>(axis)];
+        if (!place.empty() && originAbout(findQuantile(move, 0.5)) != 0.0) {
+            origin[axis] = originAbout(findQuantile(place, 0.5));
+        }
     }
     return origin;
 }
@@ -74,7 +82,8 @@ class PartReader {
     using Curve = double (*)(double);
 
 public:
-    PartReader(const GltfSplats& part, bool logarithms, const GltfDocument& document, const glm::dvec3& origin)
+    PartReader(const GltfSplats& part, bool logarithms, const GltfDocument& document,
+               const glm::dvec3& origin)
         : part_(part),
           origin_(origin),
           logarithms_(logarithms),
@@ -106,10 +115,14 @@ private:
         for (std::size_t row = 0; row < block.rows; ++row) {
             const glm::dvec4 in_node(values_[3 * row], values_[3 * row + 1], values_[3 * row + 2], 1.0);
             const glm::dvec3 position = glm::dvec3(part_.world_from_node * in_node) - origin_;
-            for (int axis = 0; axis < 3; ++axis) { block.put(kStoredX + axis, row, static_cast<float>(position[axis])); }
+            for (int axis = 0; axis < 3; ++axis) {
+                block.put(kStoredX + axis, row, static_cast<float>(position[axis]));
+            }
         }
         part_.opacity.read(first, block.rows, values_);
-        for (std::size_t row = 0; row < block.rows; ++row) { block.put(kStoredOpacity, row, storedOpacity(values_[row])); }
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            block.put(kStoredOpacity, row, storedOpacity(values_[row]));
+        }
     }
 
     void readShapes(std::uint64_t first, StoredBlock& block) {
@@ -117,8 +130,8 @@ private:
         part_.scale.read(first, block.rows, scales_);
         for (std::size_t row = 0; row < block.rows; ++row) {
             glm::dquat rotation{};
-            rotation.x = values_[4 * row], rotation.y = values_[4 * row + 1], rotation.z = values_[4 * row + 2],
-            rotation.w = values_[4 * row + 3];
+            rotation.x = values_[4 * row], rotation.y = values_[4 * row + 1],
+            rotation.z = values_[4 * row + 2], rotation.w = values_[4 * row + 3];
             std::array<float, 3> logs{};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 logs[axis] = logarithms_ ? scales_[3 * row + axis] : storedScale(scales_[3 * row + axis]);
@@ -127,13 +140,17 @@ private:
                 rotation = turned_ * rotation;
                 for (float& log : logs) { log += static_cast<float>(std::log(scale_)); }
             } else if (!is_similarity_ && glm::length(rotation) > 0.0) {
-                const Ellipsoid placed = place(linear_, {glm::normalize(rotation), glm::exp(glm::dvec3(logs[0], logs[1], logs[2]))});
+                const Ellipsoid placed = place(
+                    linear_, {glm::normalize(rotation), glm::exp(glm::dvec3(logs[0], logs[1], logs[2]))});
                 rotation = placed.rotation;
                 for (int axis = 0; axis < 3; ++axis) {
-                    logs[static_cast<std::size_t>(axis)] = storedScale(static_cast<float>(placed.scales[axis]));
+                    logs[static_cast<std::size_t>(axis)] =
+                        storedScale(static_cast<float>(placed.scales[axis]));
                 }
             }
-            for (int axis = 0; axis < 3; ++axis) { block.put(kStoredScale0 + axis, row, logs[static_cast<std::size_t>(axis)]); }
+            for (int axis = 0; axis < 3; ++axis) {
+                block.put(kStoredScale0 + axis, row, logs[static_cast<std::size_t>(axis)]);
+            }
             block.put(kStoredRot0, row, static_cast<float>(rotation.w));
             block.put(kStoredRot1, row, static_cast<float>(rotation.x));
             block.put(kStoredRot2, row, static_cast<float>(rotation.y));
@@ -143,14 +160,17 @@ private:
 
     void readColours(std::uint64_t first, StoredBlock& block) {
         const std::size_t per_channel = static_cast<std::size_t>(shCoefficientCount(sh_degree_)) - 1;
-        for (std::size_t row = 0; row < block.rows; ++row) { std::fill_n(block.rest(row), 3 * per_channel, 0.0f); }
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            std::fill_n(block.rest(row), 3 * per_channel, 0.0f);
+        }
         if (part_.colour) {
             part_.colour->read(first, block.rows, values_);
             const auto width = static_cast<std::size_t>(part_.colour->components());
             for (std::size_t row = 0; row < block.rows; ++row) {
                 for (int channel = 0; channel < 3; ++channel) {
                     // Without the 0.5 that is added to a displayed colour, as the extension defines it.
-                    block.put(kStoredDc0 + channel, row, values_[width * row + static_cast<std::size_t>(channel)] / kShConstant);
+                    block.put(kStoredDc0 + channel, row,
+                              values_[width * row + static_cast<std::size_t>(channel)] / kShConstant);
                 }
             }
             return;
@@ -171,7 +191,9 @@ private:
         if (is_rigid_ || part_.sh.size() <= 1) { return; }
         const int degree = part_.sh.size() > 9 ? 3 : part_.sh.size() > 4 ? 2 : 1;
         for (std::size_t row = 0; row < block.rows; ++row) {
-            for (std::size_t channel = 0; channel < 3; ++channel) { harmonics_.apply(block.rest(row) + channel * per_channel, degree); }
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                harmonics_.apply(block.rest(row) + channel * per_channel, degree);
+            }
         }
     }
 
@@ -184,7 +206,9 @@ private:
                 float& constant = block.column(kStoredDc0 + static_cast<int>(channel))[row];
                 const std::span<float> rest(block.rest(row) + channel * per_channel, per_channel);
                 double squares = 0.0;
-                for (const float value : rest) { squares += static_cast<double>(value) * static_cast<double>(value); }
+                for (const float value : rest) {
+                    squares += static_cast<double>(value) * static_cast<double>(value);
+                }
                 // The basis is orthonormal on the sphere, so this is the root mean square over all
                 // directions.
                 const double range = std::max(std::sqrt(squares / (4.0 * std::numbers::pi)), 1e-3);
@@ -218,8 +242,10 @@ bool isGltf(InputFile& file) {
     // A tileset of 3D Tiles has an asset, too.
     if (!startsObject(start) || start.find("\"geometricError\"") != std::string_view::npos) { return false; }
     // Any of them may come first, and may be longer than this.
-    constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"", "\"extensionsUsed\"", "\"meshes\""};
-    return std::ranges::any_of(kKeys, [&](std::string_view key) { return start.find(key) != std::string_view::npos; });
+    constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"",
+                                          "\"extensionsUsed\"", "\"meshes\""};
+    return std::ranges::any_of(
+        kKeys, [&](std::string_view key) { return start.find(key) != std::string_view::npos; });
 }
 
 glm::dvec3 originOfGltf(InputFile& file) { return findOrigin(openGltf(file)); }
@@ -230,8 +256,9 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     std::uint64_t total = 0;
     for (const GltfSplats& part : document.parts) {
         total += part.count();
-        check(total <= kMostSplatsPerByte * document.bytes, "{}: places {} splats and more, expected at most {} for each of its {} bytes",
-              file.name(), total, kMostSplatsPerByte, document.bytes);
+        check(total <= kMostSplatsPerByte * document.bytes,
+              "{}: places {} splats and more, expected at most {} for each of its {} bytes", file.name(),
+              total, kMostSplatsPerByte, document.bytes);
     }
     const bool logarithms = holdsLogarithms(document);
     const glm::dvec3 origin = findOrigin(document);
@@ -243,8 +270,11 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
         PartReader reader(part, logarithms, document, origin);
         sheared = sheared || !isSimilarity(glm::dmat3(part.world_from_node));
         for (std::uint64_t first = 0; first < part.count(); first += block.rows) {
-            if (progress && blocks++ % 128 == 0) { progress(static_cast<double>(done) / static_cast<double>(total)); }
-            block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, part.count() - first));
+            if (progress && blocks++ % 128 == 0) {
+                progress(static_cast<double>(done) / static_cast<double>(total));
+            }
+            block.rows =
+                static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, part.count() - first));
             reader.read(first, block);
             builder.append(block);
             done += block.rows;
@@ -257,21 +287,27 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     scene.y_up = true;
     scene.vertical_axis = 1;
     notes.axes = "x left, y up, z front; right-handed (glTF's own)";
-    notes.colour_space = document.is_linear ? "lin_rec709_display (named by the file)" : "srgb_rec709_display (named by the file)";
+    notes.colour_space = document.is_linear ? "lin_rec709_display (named by the file)"
+                                            : "srgb_rec709_display (named by the file)";
     scene.by_distance = document.by_distance;
     scene.is_linear = document.is_linear;
     notes.lines.insert(notes.lines.end(), document.notes.begin(), document.notes.end());
     if (scene.is_linear) {
-        notes.lines.push_back(
-            fmt::format("{}: colours of linear light (lin_rec709_display), encoded for the display once they are blended", file.name()));
+        notes.lines.push_back(fmt::format(
+            "{}: colours of linear light (lin_rec709_display), encoded for the display once they are blended",
+            file.name()));
     }
     if (logarithms) {
-        notes.lines.push_back(fmt::format(
-            "{}: some scales are negative: all were read as logarithms, as early drafts of KHR_gaussian_splatting have them", file.name()));
+        notes.lines.push_back(
+            fmt::format("{}: some scales are negative: all were read as logarithms, as early drafts of "
+                        "KHR_gaussian_splatting have them",
+                        file.name()));
     }
     if (sheared) {
         notes.lines.push_back(
-            fmt::format("{}: a node stretches its splats unevenly; the harmonics of their colours are turned, not stretched", file.name()));
+            fmt::format("{}: a node stretches its splats unevenly; the harmonics of their colours are "
+                        "turned, not stretched",
+                        file.name()));
     }
     return scene;
 }

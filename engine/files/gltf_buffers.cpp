@@ -26,7 +26,8 @@ std::optional<std::string> decodePercents(const std::string& uri) {
             continue;
         }
         unsigned letter = 0;
-        if (i + 2 >= uri.size() || std::from_chars(uri.data() + i + 1, uri.data() + i + 3, letter, 16).ptr != uri.data() + i + 3) {
+        if (i + 2 >= uri.size() ||
+            std::from_chars(uri.data() + i + 1, uri.data() + i + 3, letter, 16).ptr != uri.data() + i + 3) {
             return std::nullopt;
         }
         text += static_cast<char>(letter);
@@ -42,7 +43,9 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
     for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) { text.remove_suffix(1); }
     std::array<int, 256> values{};
     values.fill(-1);
-    for (std::size_t i = 0; i < kLetters.size(); ++i) { values[static_cast<unsigned char>(kLetters[i])] = static_cast<int>(i); }
+    for (std::size_t i = 0; i < kLetters.size(); ++i) {
+        values[static_cast<unsigned char>(kLetters[i])] = static_cast<int>(i);
+    }
     std::vector<std::byte> bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
@@ -61,13 +64,16 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
 // The bytes within a data URI of any type (RFC 2397); empty if they are not base64.
 std::optional<std::vector<std::byte>> decodeDataUri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) { return std::nullopt; }
+    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
+        return std::nullopt;
+    }
     return decodeBase64(uri.substr(comma + 1));
 }
 
 }  // namespace
 
-GltfBuffer::GltfBuffer(std::unique_ptr<InputFile> file) : own_(std::move(file)), file_(own_.get()), size_bytes_(own_->sizeBytes()) {}
+GltfBuffer::GltfBuffer(std::unique_ptr<InputFile> file)
+    : own_(std::move(file)), file_(own_.get()), size_bytes_(own_->sizeBytes()) {}
 GltfBuffer::GltfBuffer(std::vector<std::byte> bytes) : bytes_(std::move(bytes)), size_bytes_(bytes_.size()) {}
 
 void GltfBuffer::read(std::uint64_t offset, std::span<std::byte> target) const {
@@ -75,8 +81,8 @@ void GltfBuffer::read(std::uint64_t offset, std::span<std::byte> target) const {
         std::memcpy(target.data(), bytes_.data() + offset, target.size());
         return;
     }
-    check(file_->readAt(offset_ + offset, target) == target.size(), "{}: ends at byte {}, {} more were expected", file_->name(),
-          offset_ + offset, target.size());
+    check(file_->readAt(offset_ + offset, target) == target.size(),
+          "{}: ends at byte {}, {} more were expected", file_->name(), offset_ + offset, target.size());
 }
 
 void GltfBuffer::requireUnchanged() const {
@@ -86,7 +92,8 @@ void GltfBuffer::requireUnchanged() const {
 GltfBuffer openGltfUri(const InputFile& file, const std::string& uri, const std::string& place) {
     if (uri.starts_with("data:")) {
         std::optional<std::vector<std::byte>> bytes = decodeDataUri(uri);
-        check(bytes.has_value(), "{}: uri begins with '{}', expected data:application/octet-stream;base64, and base64", place,
+        check(bytes.has_value(),
+              "{}: uri begins with '{}', expected data:application/octet-stream;base64, and base64", place,
               uri.substr(0, 40));
         return GltfBuffer(std::move(*bytes));
     }
@@ -96,8 +103,11 @@ GltfBuffer openGltfUri(const InputFile& file, const std::string& uri, const std:
     const bool within = name && !name->empty() && !path.has_root_path() &&
                         name->find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
-    check(within, "{}: uri is '{}', expected a path within the folder of the file", place, uri.substr(0, 200));
-    if (file.others() != nullptr) { return GltfBuffer(file.others()->open(path.lexically_normal().generic_string())); }
+    check(within, "{}: uri is '{}', expected a path within the folder of the file", place,
+          uri.substr(0, 200));
+    if (file.others() != nullptr) {
+        return GltfBuffer(file.others()->open(path.lexically_normal().generic_string()));
+    }
     return GltfBuffer(std::make_unique<InputFile>((fs::path(file.name()).parent_path() / path).string()));
 }
 

@@ -18,7 +18,8 @@ namespace binosplat {
 class GltfColumn {
 public:
     // `components` is the accessor's. Its bytes are within the buffer, which outlives the column.
-    GltfColumn(const GltfBuffer& buffer, std::uint64_t offset, std::uint64_t stride, const gltf::Accessor& accessor)
+    GltfColumn(const GltfBuffer& buffer, std::uint64_t offset, std::uint64_t stride,
+               const gltf::Accessor& accessor)
         : buffer_(&buffer), offset_(offset), stride_(stride), accessor_(accessor) {}
 
     [[nodiscard]] std::uint64_t count() const { return accessor_.count; }

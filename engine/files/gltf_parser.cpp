@@ -29,10 +29,13 @@ std::uint64_t countOr(const JsonNode& node, const char* key, std::uint64_t other
     return node.has(key) ? node.at(key).count() : otherwise;
 }
 
-std::vector<std::size_t> indicesOf(const JsonNode& node, const char* key, std::size_t size, const char* what) {
+std::vector<std::size_t> indicesOf(const JsonNode& node, const char* key, std::size_t size,
+                                   const char* what) {
     std::vector<std::size_t> indices;
     const std::size_t count = node.has(key) ? node.at(key).arraySize() : 0;
-    for (std::size_t i = 0; i < count; ++i) { indices.push_back(indexOf(node.at(key).at(i), size, node.place(), what)); }
+    for (std::size_t i = 0; i < count; ++i) {
+        indices.push_back(indexOf(node.at(key).at(i), size, node.place(), what));
+    }
     return indices;
 }
 
@@ -43,13 +46,15 @@ std::string textOf(const JsonNode& node, const char* key) {
 BufferView viewOf(const JsonNode& node, std::size_t buffers) {
     const std::uint64_t stride = countOr(node, "byteStride", 0);
     check(stride <= 252, "{}: byteStride is {}, expected 4 to 252", node.place(), stride);
-    return {indexOf(node.at("buffer"), buffers, node.place(), "buffer"), countOr(node, "byteOffset", 0), node.at("byteLength").count(),
-            stride};
+    return {indexOf(node.at("buffer"), buffers, node.place(), "buffer"), countOr(node, "byteOffset", 0),
+            node.at("byteLength").count(), stride};
 }
 
 Accessor accessorOf(const JsonNode& node, std::size_t views) {
     Accessor result;
-    if (node.has("bufferView")) { result.view = indexOf(node.at("bufferView"), views, node.place(), "bufferView"); }
+    if (node.has("bufferView")) {
+        result.view = indexOf(node.at("bufferView"), views, node.place(), "bufferView");
+    }
     result.offset = countOr(node, "byteOffset", 0);
     result.count = node.at("count").count();
     const std::uint64_t component = node.at("componentType").count();
@@ -62,7 +67,8 @@ Accessor accessorOf(const JsonNode& node, std::size_t views) {
         {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 0}, {"MAT3", 0}, {"MAT4", 0}}};
     const std::string type = node.at("type").text();
     const auto* found = std::ranges::find(kTypes, type, &std::pair<std::string_view, int>::first);
-    check(found != kTypes.end(), "{}: type is {}, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", node.place(), type.substr(0, 40));
+    check(found != kTypes.end(), "{}: type is {}, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4",
+          node.place(), type.substr(0, 40));
     result.components = found->second;
     return result;
 }
@@ -73,7 +79,8 @@ Primitive primitiveOf(const JsonNode& node, std::size_t accessors) {
         const JsonNode attributes = node.at("attributes");
         attributes.requireObject();
         for (const auto& [name, index] : attributes.value.items()) {
-            result.attributes.emplace(name, indexOf(attributes.at(name), accessors, node.place(), "accessor"));
+            result.attributes.emplace(name,
+                                      indexOf(attributes.at(name), accessors, node.place(), "accessor"));
         }
     }
     constexpr std::uint64_t kPoints = 0, kTriangles = 4;
@@ -89,7 +96,9 @@ Primitive primitiveOf(const JsonNode& node, std::size_t accessors) {
     if (splatting.has("extensions")) {
         const JsonNode extensions = splatting.at("extensions");
         extensions.requireObject();
-        for (const auto& [name, content] : extensions.value.items()) { result.splatting->extensions.push_back(name); }
+        for (const auto& [name, content] : extensions.value.items()) {
+            result.splatting->extensions.push_back(name);
+        }
     }
     return result;
 }
@@ -101,15 +110,16 @@ std::vector<double> numbersOf(const JsonNode& node, const char* key, std::size_t
     const JsonNode array = node.at(key);
     array.requireArray(size);
     for (const nlohmann::json& value : array.value) {
-        check(value.is_number() && std::abs(value.get<double>()) < 1e30, "{}: is {}, expected numbers under 1e30", array.place(),
-              array.value.dump().substr(0, 200));
+        check(value.is_number() && std::abs(value.get<double>()) < 1e30,
+              "{}: is {}, expected numbers under 1e30", array.place(), array.value.dump().substr(0, 200));
         numbers.push_back(value.get<double>());
     }
     return numbers;
 }
 
 glm::dmat4 transformOf(const JsonNode& node) {
-    const std::vector<double> matrix = numbersOf(node, "matrix", 16), translation = numbersOf(node, "translation", 3),
+    const std::vector<double> matrix = numbersOf(node, "matrix", 16),
+                              translation = numbersOf(node, "translation", 3),
                               turn = numbersOf(node, "rotation", 4), scale = numbersOf(node, "scale", 3);
     glm::dmat4 transform(1.0);
     if (!matrix.empty()) {
@@ -119,7 +129,8 @@ glm::dmat4 transformOf(const JsonNode& node) {
     if (!turn.empty()) {
         glm::dquat rotation = glm::identity<glm::dquat>();
         rotation.x = turn[0], rotation.y = turn[1], rotation.z = turn[2], rotation.w = turn[3];
-        check(glm::length(rotation) > 0.0, "{}: rotation has length 0, expected a unit quaternion", node.place());
+        check(glm::length(rotation) > 0.0, "{}: rotation has length 0, expected a unit quaternion",
+              node.place());
         transform = glm::mat4_cast(glm::normalize(rotation));
     }
     for (int i = 0; i < 3; ++i) {
@@ -150,15 +161,22 @@ Model parse(const nlohmann::json& document, const std::string& file) {
     const auto each = [&](const char* key, auto&& put) {
         for (std::size_t i = 0; i < sizeOf(key); ++i) { put(root.at(key).at(i)); }
     };
-    each("bufferViews", [&](const JsonNode& node) { model.views.push_back(viewOf(node, sizeOf("buffers"))); });
-    each("accessors", [&](const JsonNode& node) { model.accessors.push_back(accessorOf(node, model.views.size())); });
+    each("bufferViews",
+         [&](const JsonNode& node) { model.views.push_back(viewOf(node, sizeOf("buffers"))); });
+    each("accessors",
+         [&](const JsonNode& node) { model.accessors.push_back(accessorOf(node, model.views.size())); });
     each("meshes", [&](const JsonNode& node) {
         std::vector<Primitive>& primitives = model.meshes.emplace_back();
         const JsonNode array = node.at("primitives");
-        for (std::size_t i = 0; i < array.arraySize(); ++i) { primitives.push_back(primitiveOf(array.at(i), model.accessors.size())); }
+        for (std::size_t i = 0; i < array.arraySize(); ++i) {
+            primitives.push_back(primitiveOf(array.at(i), model.accessors.size()));
+        }
     });
-    each("nodes", [&](const JsonNode& node) { model.nodes.push_back(nodeOf(node, model.meshes.size(), sizeOf("nodes"))); });
-    each("extensionsRequired", [&](const JsonNode& node) { model.required_extensions.push_back(node.text()); });
+    each("nodes", [&](const JsonNode& node) {
+        model.nodes.push_back(nodeOf(node, model.meshes.size(), sizeOf("nodes")));
+    });
+    each("extensionsRequired",
+         [&](const JsonNode& node) { model.required_extensions.push_back(node.text()); });
 
     if (sizeOf("scenes") == 0) {  // then every node without a parent counts
         std::vector<bool> is_child(model.nodes.size(), false);
@@ -170,7 +188,8 @@ Model parse(const nlohmann::json& document, const std::string& file) {
         }
         return model;
     }
-    const std::size_t scene = root.has("scene") ? indexOf(root.at("scene"), sizeOf("scenes"), file, "scene") : 0;
+    const std::size_t scene =
+        root.has("scene") ? indexOf(root.at("scene"), sizeOf("scenes"), file, "scene") : 0;
     model.roots = indicesOf(root.at("scenes").at(scene), "nodes", model.nodes.size(), "node");
     return model;
 }

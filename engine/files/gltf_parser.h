@@ -19,7 +19,14 @@ struct BufferView {
 };
 
 // As the format numbers them.
-enum class Component { kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 5123, kUint32 = 5125, kFloat32 = 5126 };
+enum class Component {
+    kInt8 = 5120,
+    kUint8 = 5121,
+    kInt16 = 5122,
+    kUint16 = 5123,
+    kUint32 = 5125,
+    kFloat32 = 5126
+};
 
 struct Accessor {
     std::optional<std::size_t> view;

@@ -19,7 +19,9 @@ constexpr int kGzipWindow = MAX_WBITS + 16;  // 16: with gzip's header
 
 // zlib's interface is not const-correct and counts in 32 bits.
 Bytef* zlibBytes(const std::byte* bytes) { return const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes)); }
-uInt zlibCount(std::size_t count) { return static_cast<uInt>(std::min<std::size_t>(count, std::numeric_limits<uInt>::max())); }
+uInt zlibCount(std::size_t count) {
+    return static_cast<uInt>(std::min<std::size_t>(count, std::numeric_limits<uInt>::max()));
+}
 
 }  // namespace
 
@@ -61,8 +63,9 @@ std::size_t GzipReader::read(std::span<std::byte> target) {
         const int result = inflate(&stream, Z_NO_FLUSH);
         done += room - stream.avail_out;
         if (result == Z_MEM_ERROR) { throw std::bad_alloc(); }
-        check(result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR, "{}: broken gzip stream before byte {} ({})", file_.name(),
-              file_.positionBytes(), stream.msg != nullptr ? stream.msg : "no reason given");
+        check(result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR,
+              "{}: broken gzip stream before byte {} ({})", file_.name(), file_.positionBytes(),
+              stream.msg != nullptr ? stream.msg : "no reason given");
         state_->ended = result == Z_STREAM_END;
     }
     return done;
@@ -94,7 +97,8 @@ struct GzipWriter::State {
 };
 
 GzipWriter::GzipWriter(PartFile& file) : file_(file), state_(std::make_unique<State>()) {
-    const int result = deflateInit2(&state_->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY);
+    const int result =
+        deflateInit2(&state_->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY);
     if (result != Z_OK) { throw std::bad_alloc(); }
 }
 

@@ -56,9 +56,10 @@ void InputFile::open() {
     const std::filesystem::file_status status = std::filesystem::status(path_, error);
     check(status.type() != std::filesystem::file_type::not_found, "{}: no such file", name_);
     check(!error, "{}: cannot be read: {}", name_, error.message());
-    check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file", name_);
-    check(status.type() == std::filesystem::file_type::regular, "{}: is not a regular file (a pipe or a device), expected a file on disk",
+    check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file",
           name_);
+    check(status.type() == std::filesystem::file_type::regular,
+          "{}: is not a regular file (a pipe or a device), expected a file on disk", name_);
     std::string reason;
     file_ = openRegularFile(path_, reason);
     check(file_ != nullptr, "{}: cannot be opened: {}", name_, reason);
@@ -69,7 +70,8 @@ void InputFile::open() {
         requireNoLfsPointer({start.data(), readAt(0, std::as_writable_bytes(std::span(start)))}, name_);
     }
     // One byte more than a small file, so that its last line does not seem too long for filling the buffer.
-    const auto buffer_bytes = static_cast<std::size_t>(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
+    const auto buffer_bytes = static_cast<std::size_t>(
+        std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
     // Stays unused if the file is read in parts.
     room_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);
     buffer_ = {room_.get(), buffer_bytes};
@@ -94,7 +96,8 @@ void InputFile::fillTo(std::size_t count) {
     while (end_ < count) {
         errno = 0;
         const std::size_t got = std::fread(buffer_.data() + end_, 1, buffer_.size() - end_, file_.get());
-        check(std::ferror(file_.get()) == 0, "{}: reading failed at byte {}: {}", name_, position_bytes_ + end_, std::strerror(errno));
+        check(std::ferror(file_.get()) == 0, "{}: reading failed at byte {}: {}", name_,
+              position_bytes_ + end_, std::strerror(errno));
         if (got == 0) { return; }
         end_ += got;
     }
@@ -119,7 +122,8 @@ InputFile::LineEnd InputFile::readLine(std::string_view& line) {
         line = {start, length > 0 && start[length - 1] == '\r' ? length - 1 : length};
         return LineEnd::kBreak;
     }
-    check(end_ - begin_ < buffer_.size(), "{}: byte {}: a line is longer than {} bytes", name_, position_bytes_, buffer_.size());
+    check(end_ - begin_ < buffer_.size(), "{}: byte {}: a line is longer than {} bytes", name_,
+          position_bytes_, buffer_.size());
     line = {buffer_.data() + begin_, end_ - begin_};
     position_bytes_ += line.size();
     begin_ = end_;
@@ -153,14 +157,16 @@ std::size_t InputFile::read(std::span<std::byte> target) {
 
 void InputFile::skip(std::uint64_t count) {
     while (count > 0) {
-        const std::size_t got = readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer_.size()))).size();
+        const std::size_t got =
+            readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer_.size()))).size();
         check(got > 0, "{}: ends at byte {}, {} more were expected", name_, position_bytes_, count);
         count -= got;
     }
 }
 
 std::vector<std::byte> InputFile::readWhole(std::uint64_t most_bytes) {
-    check(sizeBytes() <= most_bytes, "{}: is {} bytes long, expected at most {}", name_, sizeBytes(), most_bytes);
+    check(sizeBytes() <= most_bytes, "{}: is {} bytes long, expected at most {}", name_, sizeBytes(),
+          most_bytes);
     std::vector<std::byte> bytes(sizeBytes());
     bytes.resize(read(bytes));
     requireUnchanged();

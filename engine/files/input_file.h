@@ -44,7 +44,9 @@ public:
     [[nodiscard]] std::function<std::unique_ptr<InputFile>()> again() const;
     [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
     [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
-    [[nodiscard]] std::uint64_t bytesLeft() const { return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0; }
+    [[nodiscard]] std::uint64_t bytesLeft() const {
+        return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0;
+    }
 
     // Throws Error if the file has been written to since it was opened, since what was read may be half old
     // and half new. A file that was removed or replaced is read to its end as it was.

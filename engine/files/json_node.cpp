@@ -10,14 +10,19 @@
 
 namespace binosplat {
 
-nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected, int max_depth) {
+nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected,
+                         int max_depth) {
     try {
         const char* begin = reinterpret_cast<const char*>(text.data());
-        return nlohmann::json::parse(begin, begin + text.size(), [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-            check(depth <= max_depth, "{}: nested more than {} levels deep, expected {}", file, max_depth, expected);
-            return true;
-        });
-    } catch (const nlohmann::json::exception& error) { fail("{}: not JSON ({}), expected {}", file, error.what(), expected); }
+        return nlohmann::json::parse(
+            begin, begin + text.size(), [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+                check(depth <= max_depth, "{}: nested more than {} levels deep, expected {}", file, max_depth,
+                      expected);
+                return true;
+            });
+    } catch (const nlohmann::json::exception& error) {
+        fail("{}: not JSON ({}), expected {}", file, error.what(), expected);
+    }
 }
 
 bool startsObject(std::string_view start) {
@@ -39,9 +44,13 @@ JsonNode JsonNode::at(const std::string& name) const {
     return {*found, file, key.empty() ? name : key + "." + name};
 }
 
-JsonNode JsonNode::at(std::size_t index) const { return {value[index], file, fmt::format("{}[{}]", key, index)}; }
+JsonNode JsonNode::at(std::size_t index) const {
+    return {value[index], file, fmt::format("{}[{}]", key, index)};
+}
 
-void JsonNode::requireObject() const { check(value.is_object(), "{}: is {}, expected an object", place(), value.type_name()); }
+void JsonNode::requireObject() const {
+    check(value.is_object(), "{}: is {}, expected an object", place(), value.type_name());
+}
 
 std::size_t JsonNode::arraySize() const {
     check(value.is_array(), "{}: is {}, expected an array", place(), value.type_name());
@@ -55,14 +64,17 @@ void JsonNode::requireArray(std::size_t size) const {
 float JsonNode::number() const {
     check(value.is_number(), "{}: is {}, expected a number", place(), value.type_name());
     const double wide = value.get<double>();
-    check(std::abs(wide) <= static_cast<double>(std::numeric_limits<float>::max()), "{}: is {}, expected a float32 number", place(), wide);
+    check(std::abs(wide) <= static_cast<double>(std::numeric_limits<float>::max()),
+          "{}: is {}, expected a float32 number", place(), wide);
     return static_cast<float>(wide);
 }
 
 std::uint64_t JsonNode::count() const {
     // Some writers have no integers: 608.0. Beyond 2^53 a double may have been rounded.
     const double wide = value.is_number_float() ? value.get<double>() : -1.0;
-    if (wide >= 0.0 && wide <= 0x1p53 && wide == std::floor(wide)) { return static_cast<std::uint64_t>(wide); }
+    if (wide >= 0.0 && wide <= 0x1p53 && wide == std::floor(wide)) {
+        return static_cast<std::uint64_t>(wide);
+    }
     check(value.is_number_unsigned(), "{}: is {}, expected a whole number from 0 on", place(),
           value.is_number() ? value.dump() : value.type_name());
     return value.get<std::uint64_t>();

@@ -14,7 +14,8 @@ namespace binosplat {
 
 // `file` is the name for messages, `expected` what it should be. Throws Error if the text is not JSON or is
 // nested deeper than `max_depth`, so that code which walks through it or quotes it cannot overflow the stack.
-nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected, int max_depth = 64);
+nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected,
+                         int max_depth = 64);
 
 // True if a text that starts like this is an object.
 bool startsObject(std::string_view start);

@@ -49,48 +49,60 @@ struct Section {
 };
 
 Header parseHeader(const InputFile& file, std::span<const std::byte> bytes) {
-    check(bytes.size() == kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file.name(), bytes.size(), kHeaderBytes);
+    check(bytes.size() == kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file.name(),
+          bytes.size(), kHeaderBytes);
     Header header;
     header.sections = loadLittle<std::uint32_t>(bytes, 4);
     header.level = loadLittle<std::uint16_t>(bytes, 20);
-    check(header.level < kLevels.size(), "{}: header: compression level {}, expected 0, 1 or 2", file.name(), header.level);
+    check(header.level < kLevels.size(), "{}: header: compression level {}, expected 0, 1 or 2", file.name(),
+          header.level);
     const auto orElse = [](float value, float standard) { return value == 0.0f ? standard : value; };
     header.least_harmonic = orElse(loadLittle<float>(bytes, 36), -1.5f);
     header.most_harmonic = orElse(loadLittle<float>(bytes, 40), 1.5f);
     check(header.sections <= file.bytesLeft() / kSectionHeaderBytes,
-          "{}: header: {} sections, but only {} bytes are left for their headers", file.name(), header.sections, file.bytesLeft());
+          "{}: header: {} sections, but only {} bytes are left for their headers", file.name(),
+          header.sections, file.bytesLeft());
     return header;
 }
 
 // `at` is where the section's bytes begin; it is moved to their end.
-Section openSection(const InputFile& file, const Header& header, std::uint32_t index, std::span<const std::byte> bytes, std::uint64_t& at) {
+Section openSection(const InputFile& file, const Header& header, std::uint32_t index,
+                    std::span<const std::byte> bytes, std::uint64_t& at) {
     Section section;
     section.place = fmt::format("{}: section {}", file.name(), index);
-    check(bytes.size() == kSectionHeaderBytes, "{}: header: ends after {} bytes, expected {}", section.place, bytes.size(),
-          kSectionHeaderBytes);
-    const auto word = [&](std::size_t offset) { return std::uint64_t{loadLittle<std::uint32_t>(bytes, offset)}; };
+    check(bytes.size() == kSectionHeaderBytes, "{}: header: ends after {} bytes, expected {}", section.place,
+          bytes.size(), kSectionHeaderBytes);
+    const auto word = [&](std::size_t offset) {
+        return std::uint64_t{loadLittle<std::uint32_t>(bytes, offset)};
+    };
     const Level& level = kLevels[header.level];
-    const std::uint64_t room = word(4), buckets = word(12), range = word(24) == 0 ? 32767 : word(24), others = word(36);
+    const std::uint64_t room = word(4), buckets = word(12), range = word(24) == 0 ? 32767 : word(24),
+                        others = word(36);
     const std::uint64_t bucket_bytes = loadLittle<std::uint16_t>(bytes, 20);
     section.splats = word(0);
     section.bucket_size = word(8);
     section.full_buckets = word(32);
     section.sh_degree = loadLittle<std::uint16_t>(bytes, 40);
-    check(section.splats <= room, "{}: header: {} splats with room for {}", section.place, section.splats, room);
-    check(section.sh_degree <= kMostDegree, "{}: header: SH degree {}, expected 0 to {}", section.place, section.sh_degree, kMostDegree);
+    check(section.splats <= room, "{}: header: {} splats with room for {}", section.place, section.splats,
+          room);
+    check(section.sh_degree <= kMostDegree, "{}: header: SH degree {}, expected 0 to {}", section.place,
+          section.sh_degree, kMostDegree);
     section.splat_bytes =
-        level.harmonicsAt() + 3 * (static_cast<std::uint64_t>(shCoefficientCount(section.sh_degree)) - 1) * level.harmonic;
+        level.harmonicsAt() +
+        3 * (static_cast<std::uint64_t>(shCoefficientCount(section.sh_degree)) - 1) * level.harmonic;
     // Each of these easily fits into 64 bits.
-    const std::uint64_t bytes_needed = 4 * others + bucket_bytes * buckets + section.splat_bytes * room, left = file.sizeBytes() - at;
-    check(bytes_needed <= left, "{}: data: {} bytes are left of {} for {} splats and {} buckets", section.place, left, bytes_needed, room,
-          buckets);
+    const std::uint64_t bytes_needed = 4 * others + bucket_bytes * buckets + section.splat_bytes * room,
+                        left = file.sizeBytes() - at;
+    check(bytes_needed <= left, "{}: data: {} bytes are left of {} for {} splats and {} buckets",
+          section.place, left, bytes_needed, room, buckets);
 
     std::uint64_t held = section.full_buckets * section.bucket_size;
     if (header.level > 0) {
-        check(bucket_bytes == kBucketBytes || buckets == 0, "{}: header: {} bytes a bucket, expected {}", section.place, bucket_bytes,
-              kBucketBytes);
+        check(bucket_bytes == kBucketBytes || buckets == 0, "{}: header: {} bytes a bucket, expected {}",
+              section.place, bucket_bytes, kBucketBytes);
         check(section.full_buckets <= buckets && others == buckets - section.full_buckets,
-              "{}: header: {} full and {} other buckets, expected {} in all", section.place, section.full_buckets, others, buckets);
+              "{}: header: {} full and {} other buckets, expected {} in all", section.place,
+              section.full_buckets, others, buckets);
         section.middle = static_cast<float>(range);
         section.step = loadLittle<float>(bytes, 16) / 2.0f / section.middle;
         std::vector<std::byte> stored(4 * others + kBucketBytes * buckets);
@@ -100,10 +112,13 @@ Section openSection(const InputFile& file, const Header& header, std::uint32_t i
             held += section.other_sizes.back();
         }
         for (std::size_t i = 0; i < buckets; ++i) {
-            const auto coordinate = [&](std::size_t axis) { return loadLittle<float>(stored, 4 * others + kBucketBytes * i + 4 * axis); };
+            const auto coordinate = [&](std::size_t axis) {
+                return loadLittle<float>(stored, 4 * others + kBucketBytes * i + 4 * axis);
+            };
             section.centres.emplace_back(coordinate(0), coordinate(1), coordinate(2));
         }
-        check(held >= section.splats, "{}: data: {} buckets hold {} splats, expected {}", section.place, buckets, held, section.splats);
+        check(held >= section.splats, "{}: data: {} buckets hold {} splats, expected {}", section.place,
+              buckets, held, section.splats);
     }
     section.splats_at = at + 4 * others + bucket_bytes * buckets;
     at += bytes_needed;
@@ -134,12 +149,13 @@ private:
 };
 
 float loadFloat(std::span<const std::byte> bytes, std::size_t offset, std::size_t size) {
-    return size == 4 ? loadLittle<float>(bytes, offset) : glm::unpackHalf1x16(loadLittle<std::uint16_t>(bytes, offset));
+    return size == 4 ? loadLittle<float>(bytes, offset)
+                     : glm::unpackHalf1x16(loadLittle<std::uint16_t>(bytes, offset));
 }
 
 // `sh_degree` is the builder's, at least the section's; the block's old content is overwritten.
-void unpackSplat(const Header& header, const Section& section, std::span<const std::byte> bytes, Buckets& buckets, int sh_degree,
-                 StoredBlock& block, std::size_t row) {
+void unpackSplat(const Header& header, const Section& section, std::span<const std::byte> bytes,
+                 Buckets& buckets, int sh_degree, StoredBlock& block, std::size_t row) {
     const Level& level = kLevels[header.level];
     const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
     const std::size_t scales_at = 3 * level.position, rotation_at = scales_at + 3 * level.scale,
@@ -148,15 +164,19 @@ void unpackSplat(const Header& header, const Section& section, std::span<const s
     for (int axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         put(kStoredX + axis,
-            header.level == 0
-                ? loadLittle<float>(bytes, 4 * i)
-                : centre[axis] + (static_cast<float>(loadLittle<std::uint16_t>(bytes, 2 * i)) - section.middle) * section.step);
+            header.level == 0 ? loadLittle<float>(bytes, 4 * i)
+                              : centre[axis] + (static_cast<float>(loadLittle<std::uint16_t>(bytes, 2 * i)) -
+                                                section.middle) *
+                                                   section.step);
         put(kStoredScale0 + axis, storedScale(loadFloat(bytes, scales_at + level.scale * i, level.scale)));
-        put(kStoredDc0 + axis, storedColour(static_cast<float>(std::to_integer<int>(bytes[colour_at + i])) / 255.0f));
+        put(kStoredDc0 + axis,
+            storedColour(static_cast<float>(std::to_integer<int>(bytes[colour_at + i])) / 255.0f));
     }
-    put(kStoredOpacity, storedOpacity(static_cast<float>(std::to_integer<int>(bytes[colour_at + 3])) / 255.0f));
+    put(kStoredOpacity,
+        storedOpacity(static_cast<float>(std::to_integer<int>(bytes[colour_at + 3])) / 255.0f));
     for (std::size_t i = 0; i < 4; ++i) {
-        put(kStoredRot0 + static_cast<int>(i), loadFloat(bytes, rotation_at + level.rotation * i, level.rotation));
+        put(kStoredRot0 + static_cast<int>(i),
+            loadFloat(bytes, rotation_at + level.rotation * i, level.rotation));
     }
 
     const std::size_t in_block = static_cast<std::size_t>(shCoefficientCount(sh_degree)) - 1;
@@ -165,11 +185,13 @@ void unpackSplat(const Header& header, const Section& section, std::span<const s
     std::size_t at = level.harmonicsAt();
     for (std::size_t band = 1; band <= static_cast<std::size_t>(section.sh_degree); ++band) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            for (std::size_t k = band * band - 1; k < (band + 1) * (band + 1) - 1; ++k, at += level.harmonic) {
+            for (std::size_t k = band * band - 1; k < (band + 1) * (band + 1) - 1;
+                 ++k, at += level.harmonic) {
                 const float share = static_cast<float>(std::to_integer<int>(bytes[at])) / 255.0f;
-                block.rest(row)[channel * in_block + k] = level.harmonic > 1
-                                                              ? loadFloat(bytes, at, level.harmonic)
-                                                              : header.least_harmonic * (1.0f - share) + header.most_harmonic * share;
+                block.rest(row)[channel * in_block + k] =
+                    level.harmonic > 1
+                        ? loadFloat(bytes, at, level.harmonic)
+                        : header.least_harmonic * (1.0f - share) + header.most_harmonic * share;
             }
         }
     }
@@ -182,7 +204,8 @@ bool isKsplat(InputFile& file) {
     const std::span<const std::byte> bytes = std::as_bytes(std::span(start.data(), start.size()));
     if (bytes.size() < 24 || loadLittle<std::uint32_t>(bytes, 0) != 0x100) { return false; }  // version 0.1
     const auto word = [&](std::size_t offset) { return loadLittle<std::uint32_t>(bytes, offset); };
-    return word(4) >= 1 && word(4) <= kMostSections && word(8) <= word(4) && loadLittle<std::uint16_t>(bytes, 20) < 256;
+    return word(4) >= 1 && word(4) <= kMostSections && word(8) <= word(4) &&
+           loadLittle<std::uint16_t>(bytes, 20) < 256;
 }
 
 Scene readKsplat(InputFile& file, LoadNotes& notes, const Progress& progress) {
@@ -202,14 +225,18 @@ Scene readKsplat(InputFile& file, LoadNotes& notes, const Progress& progress) {
     for (const Section& section : sections) {
         Buckets buckets(section);
         for (std::uint64_t first = 0; first < section.splats; first += block.rows) {
-            if (progress && blocks++ % 128 == 0) { progress(static_cast<double>(done) / static_cast<double>(total)); }
-            block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, section.splats - first));
+            if (progress && blocks++ % 128 == 0) {
+                progress(static_cast<double>(done) / static_cast<double>(total));
+            }
+            block.rows =
+                static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, section.splats - first));
             rows.resize(block.rows * section.splat_bytes);
-            check(file.readAt(section.splats_at + first * section.splat_bytes, rows) == rows.size(), "{}: data: ends before splat {} of {}",
-                  section.place, first + block.rows, section.splats);
+            check(file.readAt(section.splats_at + first * section.splat_bytes, rows) == rows.size(),
+                  "{}: data: ends before splat {} of {}", section.place, first + block.rows, section.splats);
             for (std::size_t row = 0; row < block.rows; ++row) {
-                unpackSplat(header, section, std::span(rows).subspan(row * section.splat_bytes, section.splat_bytes), buckets, sh_degree,
-                            block, row);
+                unpackSplat(header, section,
+                            std::span(rows).subspan(row * section.splat_bytes, section.splat_bytes), buckets,
+                            sh_degree, block, row);
             }
             builder.append(block);
             done += block.rows;

@@ -45,37 +45,58 @@ struct SceneFormat {
 };
 constexpr std::array<SceneFormat, 10> kSceneFormats{{
     {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readCompressedPly(*source.file, notes, progress);
+     }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readPly(*source.file, notes, progress); }},
-    {"streamed SOG (directory)", [](Source& source) { return !source.file && isStreamedSogFolder(source.path); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readPly(*source.file, notes, progress);
+     }},
+    {"streamed SOG (directory)",
+     [](Source& source) { return !source.file && isStreamedSogFolder(source.path); },
      [](Source& source, LoadNotes& notes, const Progress& progress) {
          return readStreamedSogFolder(source.path, source.level, notes, progress);
      },
      true},
-    {"streamed SOG (lod-meta.json)", [](Source& source) { return source.file && isStreamedSogFile(*source.file); },
+    {"streamed SOG (lod-meta.json)",
+     [](Source& source) { return source.file && isStreamedSogFile(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) {
          return readStreamedSogFile(*source.file, source.level, notes, progress);
      },
      true},
     {"SOG (directory)", [](Source& source) { return !source.file && isSogFolder(source.path); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFolder(source.path, notes, progress); }},
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readSogFolder(source.path, notes, progress);
+     }},
     {"SOG (.sog)", [](Source& source) { return source.file && isSogFile(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFile(*source.file, notes, progress); }},
-    {"glTF with KHR_gaussian_splatting (.gltf, .glb)", [](Source& source) { return source.file && isGltf(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readGltf(*source.file, notes, progress); }},
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readSogFile(*source.file, notes, progress);
+     }},
+    {"glTF with KHR_gaussian_splatting (.gltf, .glb)",
+     [](Source& source) { return source.file && isGltf(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readGltf(*source.file, notes, progress);
+     }},
     {"SPZ", [](Source& source) { return source.file && isSpz(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSpz(*source.file, notes, progress); }},
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readSpz(*source.file, notes, progress);
+     }},
     {".ksplat", [](Source& source) { return source.file && isKsplat(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readKsplat(*source.file, notes, progress); }},
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readKsplat(*source.file, notes, progress);
+     }},
     // A guess, so it comes last.
     {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },
-     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSplatFile(*source.file, notes, progress); }},
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readSplatFile(*source.file, notes, progress);
+     }},
 }};
 
 std::string listFormats() {
     std::string names;
-    for (const SceneFormat& format : kSceneFormats) { names += (names.empty() ? "" : ", ") + std::string(format.name); }
+    for (const SceneFormat& format : kSceneFormats) {
+        names += (names.empty() ? "" : ", ") + std::string(format.name);
+    }
     return names;
 }
 
@@ -95,12 +116,15 @@ Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, con
 }
 
 void requireNoLevel(const std::string& source, const char* kind, const LevelChoice& choice) {
-    check(!choice.level, "{}: lod is {}, but a scene of this kind ({}) has no levels of detail, expected a streamed SOG scene", source,
-          choice.level.value_or(0), kind);
+    check(
+        !choice.level,
+        "{}: lod is {}, but a scene of this kind ({}) has no levels of detail, expected a streamed SOG scene",
+        source, choice.level.value_or(0), kind);
 }
 
 const SceneFormat* findFormat(Source& source) {
-    const auto* found = std::ranges::find_if(kSceneFormats, [&](const SceneFormat& format) { return format.matches(source); });
+    const auto* found = std::ranges::find_if(
+        kSceneFormats, [&](const SceneFormat& format) { return format.matches(source); });
     return found == kSceneFormats.end() ? nullptr : found;
 }
 
@@ -113,7 +137,8 @@ const SceneFormat* findFormat(Source& source) {
     check(other.empty(), "{}: {}", folder.path, other);
     fail(
         "{}: is a directory, expected one with lod-meta.json (streamed SOG), meta.json (SOG), "
-        "point_cloud/iteration_N/point_cloud.ply (a training's output), numbered files of one format (a moving scene) or one scene file",
+        "point_cloud/iteration_N/point_cloud.ply (a training's output), numbered files of one format (a "
+        "moving scene) or one scene file",
         folder.path);
 }
 
@@ -123,9 +148,11 @@ constexpr double kUnpackingShare = 0.4;
 Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
     if (source.file && isPacked(*source.file)) {
         const auto part = [&](double first, double share) {
-            return progress ? Progress([&, first, share](double done) { progress(first + share * done); }) : Progress();
+            return progress ? Progress([&, first, share](double done) { progress(first + share * done); })
+                            : Progress();
         };
-        Source unpacked{source.path, unpackScene(std::move(source.file), part(0.0, kUnpackingShare)), source.level};
+        Source unpacked{source.path, unpackScene(std::move(source.file), part(0.0, kUnpackingShare)),
+                        source.level};
         check(!isPacked(*unpacked.file), "{}: is packed twice, expected once", source.path);
         return loadFrom(unpacked, notes, part(kUnpackingShare, 1.0 - kUnpackingShare));
     }
@@ -144,7 +171,9 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
         };
         if (const std::optional<TrainingOutput> training = findTrainingOutput(source.path)) {
             Scene scene = loadOne(training->scene, "a training's output");
-            if (!training->older.empty()) { notes.lines.back() += fmt::format("; older ones: {}", fmt::join(training->older, ", ")); }
+            if (!training->older.empty()) {
+                notes.lines.back() += fmt::format("; older ones: {}", fmt::join(training->older, ", "));
+            }
             return scene;
         }
         if (!isMovingScene(source.path)) {
@@ -157,7 +186,8 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
         const SceneSeries series(source.path);
         return loadOne(series.nameOf(0), fmt::format("a moving scene of {} frames", series.size()));
     }
-    check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());
+    check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path,
+          listFormats());
     const std::string other = describeOther(source.file->peek(std::size_t{1} << 16), source.path);
     check(other.empty(), "{}: {}", source.path, other);
     fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source.path, listFormats());
@@ -173,8 +203,8 @@ std::string formatOfFile(const std::string& path) {
     return format == nullptr ? "" : format->name;
 }
 
-Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNotes* notes, const Progress& progress,
-                const LevelChoice& level) {
+Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNotes* notes,
+                const Progress& progress, const LevelChoice& level) {
     LoadNotes ignored;
     LoadNotes& met = notes != nullptr ? *notes : ignored;
     met = {};
@@ -189,12 +219,16 @@ Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNot
             met.colour_space = "display-encoded (sRGB)";
             return scene;
         }
-        Source opened{source, std::filesystem::is_directory(source, unreadable) ? nullptr : std::make_unique<InputFile>(source), level};
+        Source opened{
+            source,
+            std::filesystem::is_directory(source, unreadable) ? nullptr : std::make_unique<InputFile>(source),
+            level};
         return loadFrom(opened, met, progress);
     } catch (const std::bad_alloc&) { fail("{}: needs more memory than this machine gives", source); }
 }
 
-Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress, const LevelChoice& level) {
+Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress,
+                const LevelChoice& level) {
     notes = {};
     const std::string name = file->name();
     try {

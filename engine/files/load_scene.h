@@ -23,8 +23,8 @@ struct LevelChoice {
 // default). A directory is a SOG scene, a training's output (its newest scene is taken), a moving scene (its
 // first frame is), or holds one scene file. Needs at most twice the scene's own size in host memory. Throws
 // Error with file, place, what is wrong and what was expected.
-Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
-                const LevelChoice& level = {});
+Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr,
+                const Progress& progress = {}, const LevelChoice& level = {});
 
 // The format of the scene in a file, by the beginning of its content; empty if unknown. Throws Error if that
 // cannot be read.
@@ -32,6 +32,7 @@ std::string formatOfFile(const std::string& path);
 
 // The same for an open file, wherever its scene's other files are.
 class InputFile;
-Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress = {}, const LevelChoice& level = {});
+Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress = {},
+                const LevelChoice& level = {});
 
 }  // namespace binosplat

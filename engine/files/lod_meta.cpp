@@ -26,11 +26,12 @@ constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 40;
 std::string readChunkPath(const JsonNode& node) {
     const std::string text = node.filePath();
     const std::filesystem::path path(text);
-    const bool within = !path.has_root_path() && text.find_first_of(std::string_view(":\0", 2)) == std::string::npos &&
+    const bool within = !path.has_root_path() &&
+                        text.find_first_of(std::string_view(":\0", 2)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
     check(within, "{}: names \"{}\", expected a path within the folder of this file", node.place(), text);
-    check(path.filename() == "meta.json" || path.extension() == ".sog", "{}: names \"{}\", expected the meta.json or the .sog of a chunk",
-          node.place(), text);
+    check(path.filename() == "meta.json" || path.extension() == ".sog",
+          "{}: names \"{}\", expected the meta.json or the .sog of a chunk", node.place(), text);
     return path.lexically_normal().generic_string();
 }
 
@@ -38,7 +39,8 @@ void readFiles(const JsonNode& root, LodMeta& meta) {
     std::set<std::string> known;
     const auto readOnce = [&](const JsonNode& node) {
         std::string path = readChunkPath(node);
-        check(known.insert(path).second, "{}: names {} once more, expected each chunk once", node.place(), path);
+        check(known.insert(path).second, "{}: names {} once more, expected each chunk once", node.place(),
+              path);
         return path;
     };
     const JsonNode files = root.at("filenames");
@@ -64,8 +66,8 @@ std::uint64_t readSplats(const JsonNode& node) {
 void readErrors(const JsonNode& errors, LodLeaf& leaf) {
     const std::size_t size = errors.arraySize();
     for (const LodRange& range : leaf.levels) {
-        check(range.level < size, "{}: has {} values, expected one for each level up to {}", errors.place(), size,
-              leaf.levels.back().level);
+        check(range.level < size, "{}: has {} values, expected one for each level up to {}", errors.place(),
+              size, leaf.levels.back().level);
         const JsonNode error = errors.at(range.level);
         leaf.errors.push_back(error.number());
         check(leaf.errors.back() >= 0.0f, "{}: is {}, expected 0 or more", error.place(), leaf.errors.back());
@@ -81,16 +83,19 @@ void readLeaf(const JsonNode& node, LodLeaf leaf, LodMeta& meta) {
         const std::optional<std::size_t> level = readLevel(key, meta.levels.size());
         check(level.has_value(), "{}: is no level, expected 0 to {}", entry.place(), meta.levels.size() - 1);
         const JsonNode file = entry.at("file");
-        check(file.count() < meta.files.size(), "{}: is {}, expected less than the {} of filenames", file.place(), file.count(),
-              meta.files.size());
+        check(file.count() < meta.files.size(), "{}: is {}, expected less than the {} of filenames",
+              file.place(), file.count(), meta.files.size());
         const SplatRange range{readSplats(entry.at("offset")), readSplats(entry.at("count"))};
         if (range.count == 0) { continue; }
         meta.levels[*level].chunks[file.count()].push_back(range);
-        leaf.levels.push_back({static_cast<std::uint32_t>(*level), static_cast<std::uint32_t>(file.count()), range});
+        leaf.levels.push_back(
+            {static_cast<std::uint32_t>(*level), static_cast<std::uint32_t>(file.count()), range});
         present[*level] = true;
     }
     const bool any = !leaf.levels.empty();
-    for (std::size_t level = 0; level < present.size(); ++level) { meta.leaves_without[level] += any && !present[level]; }
+    for (std::size_t level = 0; level < present.size(); ++level) {
+        meta.leaves_without[level] += any && !present[level];
+    }
     ++meta.leaves;
     if (!any) { return; }  // then its box may be empty, too
     const bool is_box = glm::all(glm::lessThanEqual(leaf.low, leaf.high));
@@ -129,13 +134,15 @@ void readTree(const JsonNode& node, LodMeta& meta) {
 }
 
 // Ranges of leaves that are adjacent in a chunk are merged.
-void joinRanges(const LodMeta& meta, std::size_t file, std::vector<SplatRange>& ranges, const std::string& place) {
+void joinRanges(const LodMeta& meta, std::size_t file, std::vector<SplatRange>& ranges,
+                const std::string& place) {
     std::ranges::sort(ranges, {}, &SplatRange::first);
     std::vector<SplatRange> joined;
     for (const SplatRange range : ranges) {
         const std::uint64_t end = joined.empty() ? 0 : joined.back().first + joined.back().count;
-        check(joined.empty() || range.first >= end, "{}: tree: two leaves name splat {} of filenames[{}] ({}), expected each splat once",
-              place, range.first, file, meta.files[file]);
+        check(joined.empty() || range.first >= end,
+              "{}: tree: two leaves name splat {} of filenames[{}] ({}), expected each splat once", place,
+              range.first, file, meta.files[file]);
         if (!joined.empty() && range.first == end) {
             joined.back().count += range.count;
         } else {
@@ -149,14 +156,16 @@ void joinRanges(const LodMeta& meta, std::size_t file, std::vector<SplatRange>& 
 
 LodMeta parseLodMeta(std::span<const std::byte> text, const std::string& place) {
     // A node of the tree is an object within an array; a leaf's entries are two levels deeper.
-    const nlohmann::json document = parseJson(text, place, "the levels of a streamed SOG scene", 2 * kMaxTreeDepth + 4);
+    const nlohmann::json document =
+        parseJson(text, place, "the levels of a streamed SOG scene", 2 * kMaxTreeDepth + 4);
     const JsonNode root{document, place};
     if (root.has("version")) {
         const JsonNode version = root.at("version");  // the first writers left it out
         check(version.count() == 1, "{}: is {}, expected 1", version.place(), version.count());
     }
     const JsonNode levels = root.at("lodLevels");
-    check(levels.count() >= 1 && levels.count() <= kMaxLevels, "{}: is {}, expected 1 to {}", levels.place(), levels.count(), kMaxLevels);
+    check(levels.count() >= 1 && levels.count() <= kMaxLevels, "{}: is {}, expected 1 to {}", levels.place(),
+          levels.count(), kMaxLevels);
 
     LodMeta meta;
     meta.has_errors = root.has("lodErrors") && root.at("lodErrors").flag();

@@ -16,9 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *kTrainIt = "expected the scene that a training makes from it, such as point_cloud/iteration_N/point_cloud.ply",
-                     *kTiles = "expected the file of its splats, such as a .glb that it names",
-                     *kForCameras = "expected the scene itself (--cameras takes the cameras of a 3DGS training)";
+constexpr const char
+    *kTrainIt =
+        "expected the scene that a training makes from it, such as point_cloud/iteration_N/point_cloud.ply",
+    *kTiles = "expected the file of its splats, such as a .glb that it names",
+    *kForCameras = "expected the scene itself (--cameras takes the cameras of a 3DGS training)";
 
 // A file with both words in its first bytes, or, without words, of this name.
 struct OtherFile {
@@ -29,7 +31,10 @@ struct OtherFile {
 };
 constexpr std::array<OtherFile, 9> kOtherFiles{{
     {{"\"geometricError\"", "\"asset\""}, "", "a tileset of 3D Tiles", kTiles},
-    {{"\"transform_matrix\"", "\"frames\""}, "", "a list of photographs with their cameras (transforms.json)", kTrainIt},
+    {{"\"transform_matrix\"", "\"frames\""},
+     "",
+     "a list of photographs with their cameras (transforms.json)",
+     kTrainIt},
     {{"\"img_name\"", "\"rotation\""}, "", "the cameras of a 3DGS training (cameras.json)", kForCameras},
     {{"\"cameras\"", ""}, "", "a list of cameras", kForCameras},
     {{}, "cameras.bin", "the cameras of a COLMAP project", kTrainIt},
@@ -66,19 +71,23 @@ bool isWebPage(std::string_view start) {
     return lower.starts_with("<!doctype html") || lower.starts_with("<html");
 }
 
-std::string describe(const char* what, const char* instead) { return fmt::format("{}, not a splat scene, {}", what, instead); }
+std::string describe(const char* what, const char* instead) {
+    return fmt::format("{}, not a splat scene, {}", what, instead);
+}
 
 }  // namespace
 
 std::string describeOther(std::string_view start, const std::string& path) {
     if (isWebPage(start)) {
-        return describe("a web page (HTML)", "expected the file that its download button gives: a link to a viewer was saved");
+        return describe("a web page (HTML)",
+                        "expected the file that its download button gives: a link to a viewer was saved");
     }
     const std::string name = fs::path(path).filename().string();
     for (const OtherFile& other : kOtherFiles) {
-        const bool is_it = !other.name.empty() ? name == other.name : std::ranges::all_of(other.words, [&](std::string_view word) {
-            return start.find(word) != std::string_view::npos;
-        });
+        const bool is_it = !other.name.empty() ? name == other.name
+                                               : std::ranges::all_of(other.words, [&](std::string_view word) {
+                                                     return start.find(word) != std::string_view::npos;
+                                                 });
         if (is_it) { return describe(other.what, other.instead); }
     }
     return {};
@@ -87,7 +96,9 @@ std::string describeOther(std::string_view start, const std::string& path) {
 std::string describeOtherFolder(const std::string& folder) {
     std::error_code error;
     for (const OtherFolder& other : kOtherFolders) {
-        if (fs::exists(fs::path(folder) / other.member, error)) { return describe(other.what, other.instead); }
+        if (fs::exists(fs::path(folder) / other.member, error)) {
+            return describe(other.what, other.instead);
+        }
     }
     return {};
 }

@@ -28,7 +28,8 @@ struct Unpacking {
 // The scene in a packed file, as a file of its own; files that it names beside it are looked up in its
 // archive. Throws Error for an archive that is broken or encrypted, or holds no scene or several, and for a
 // scene that is more than 256 times as long as its packed bytes, or does not fit where temporary files are.
-std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, const Unpacking& how = {});
+std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress,
+                                       const Unpacking& how = {});
 // A scene's file, unpacked if it is packed.
 std::unique_ptr<InputFile> openUnpacked(const std::string& path, const Unpacking& how = {});
 

@@ -18,8 +18,9 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::array<const char*, kStoredRest0> kRequiredNames{"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
-                                                               "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
+constexpr std::array<const char*, kStoredRest0> kRequiredNames{
+    "x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+    "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
 
 // The columns that the vertex element provides, and what follows from their number.
 struct Layout {
@@ -67,17 +68,22 @@ void refusePointCloud(const InputFile& file, const ply::Header& header, const pl
     };
     const bool any_splat = has("f_dc_0") || has("opacity") || has("scale_0") || has("rot_0");
     if (any_splat || !has("x") || !has("y") || !has("z")) { return; }
-    const bool faces = std::ranges::any_of(header.elements, [](const ply::Element& e) { return e.name == "face" && e.count > 0; });
-    fail("{}: a {} ({} {}{}{}), not a splat scene, expected the one that a training leaves in point_cloud/iteration_N/point_cloud.ply",
-         file.name(), faces ? "mesh" : "point cloud", vertex.count, faces ? "vertices" : "points",
-         has("red") || has("r") || has("diffuse_red") ? ", with colours" : "", has("nx") ? ", with normals" : "");
+    const bool faces = std::ranges::any_of(
+        header.elements, [](const ply::Element& e) { return e.name == "face" && e.count > 0; });
+    fail(
+        "{}: a {} ({} {}{}{}), not a splat scene, expected the one that a training leaves in "
+        "point_cloud/iteration_N/point_cloud.ply",
+        file.name(), faces ? "mesh" : "point cloud", vertex.count, faces ? "vertices" : "points",
+        has("red") || has("r") || has("diffuse_red") ? ", with colours" : "",
+        has("nx") ? ", with normals" : "");
 }
 
 void refuseAnchors(const InputFile& file, const ply::Element& vertex) {
-    const bool has_features =
-        std::ranges::any_of(vertex.properties, [](const ply::Property& p) { return p.name.starts_with("f_anchor_feat"); });
+    const bool has_features = std::ranges::any_of(
+        vertex.properties, [](const ply::Property& p) { return p.name.starts_with("f_anchor_feat"); });
     check(!has_features,
-          "{}: anchors of Scaffold-GS, from which a network makes other splats for each view, expected splats as a 3DGS or 2DGS training "
+          "{}: anchors of Scaffold-GS, from which a network makes other splats for each view, expected "
+          "splats as a 3DGS or 2DGS training "
           "leaves them",
           file.name());
 }
@@ -90,15 +96,19 @@ const ply::Element& findSplats(const InputFile& file, const ply::Header& header)
 }
 
 // Harmonics of one channel, without the constant one.
-std::size_t restPerChannel(int sh_degree) { return static_cast<std::size_t>(shCoefficientCount(sh_degree)) - 1; }
+std::size_t restPerChannel(int sh_degree) {
+    return static_cast<std::size_t>(shCoefficientCount(sh_degree)) - 1;
+}
 
 Layout planColumns(const InputFile& file, const ply::Element& vertex) {
     std::map<std::string, std::size_t> index_of;
     std::size_t rest_count = 0;
     for (std::size_t i = 0; i < vertex.properties.size(); ++i) {
         const ply::Property& property = vertex.properties[i];
-        check(!property.is_list, "{}: header: property {} of element vertex is a list, expected scalars only", file.name(), property.name);
-        check(index_of.emplace(property.name, i).second, "{}: header: property {} of element vertex twice", file.name(), property.name);
+        check(!property.is_list, "{}: header: property {} of element vertex is a list, expected scalars only",
+              file.name(), property.name);
+        check(index_of.emplace(property.name, i).second, "{}: header: property {} of element vertex twice",
+              file.name(), property.name);
         rest_count += property.name.starts_with("f_rest_");
     }
 
@@ -109,14 +119,16 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
         if (attribute == kStoredScale2 && !layout.three_scales) { continue; }
         const auto found = index_of.find(name);
         check(found != index_of.end(),
-              "{}: header: element vertex has no property {}, expected a splat scene with x y z f_dc_0..2 opacity scale_0..1 rot_0..3",
+              "{}: header: element vertex has no property {}, expected a splat scene with x y z f_dc_0..2 "
+              "opacity scale_0..1 rot_0..3",
               file.name(), name);
         layout.columns.push_back({found->second, attribute});
     }
     constexpr int kMostDegree = kMaxShDegree + 1;  // its highest band is left out
     int& in_file = layout.sh_degree_in_file;
     while (in_file <= kMostDegree && 3 * restPerChannel(in_file) != rest_count) { ++in_file; }
-    check(in_file <= kMostDegree, "{}: header: element vertex has {} f_rest properties, expected 0, 9, 24, 45 or 72", file.name(),
+    check(in_file <= kMostDegree,
+          "{}: header: element vertex has {} f_rest properties, expected 0, 9, 24, 45 or 72", file.name(),
           rest_count);
     layout.sh_degree = std::min(in_file, kMaxShDegree);
     int attribute = kStoredRest0;
@@ -124,8 +136,9 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
         for (std::size_t k = 0; k < restPerChannel(layout.sh_degree); ++k, ++attribute) {
             const std::size_t i = channel * restPerChannel(in_file) + k;
             const auto found = index_of.find(fmt::format("f_rest_{}", i));
-            check(found != index_of.end(), "{}: header: element vertex has {} f_rest properties but no f_rest_{}", file.name(), rest_count,
-                  i);
+            check(found != index_of.end(),
+                  "{}: header: element vertex has {} f_rest properties but no f_rest_{}", file.name(),
+                  rest_count, i);
             layout.columns.push_back({found->second, attribute});
         }
     }
@@ -139,8 +152,9 @@ bool looksActivated(const StoredBlock& block, bool three_scales) {
         return std::all_of(block.column(attribute), block.column(attribute) + block.rows, isSo);
     };
     const auto is_positive = [](float value) { return value > 0.0f; };
-    return all(kStoredOpacity, [](float value) { return value >= 0.0f && value <= 1.0f; }) && all(kStoredScale0, is_positive) &&
-           all(kStoredScale1, is_positive) && (!three_scales || all(kStoredScale2, is_positive));
+    return all(kStoredOpacity, [](float value) { return value >= 0.0f && value <= 1.0f; }) &&
+           all(kStoredScale0, is_positive) && all(kStoredScale1, is_positive) &&
+           (!three_scales || all(kStoredScale2, is_positive));
 }
 
 // Only for float64 axes: float32 has lost its detail already.
@@ -160,7 +174,8 @@ struct OpenedPly {
         : header(readPlainHeader(file)),
           vertex(findSplats(file, header)),
           layout(planColumns(file, vertex)),
-          moment(vertex, kStoredRest0 + 3 * static_cast<int>(restPerChannel(layout.sh_degree)), layout.columns) {
+          moment(vertex, kStoredRest0 + 3 * static_cast<int>(restPerChannel(layout.sh_degree)),
+                 layout.columns) {
         for (const ply::Element* element = header.elements.data(); element != &vertex; ++element) {
             ply::skipElement(file, header.encoding, *element);
         }
@@ -201,7 +216,8 @@ void readParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, con
     std::uint64_t done = 0, count = 0, in_part = 0;
     const auto begin = [&] {
         in_part = 0;
-        SceneBuilder builder(file.name(), std::min(part_splats, vertex.count - done), layout.sh_degree, layout.three_scales);
+        SceneBuilder builder(file.name(), std::min(part_splats, vertex.count - done), layout.sh_degree,
+                             layout.three_scales);
         builder.expect(ply.some);
         return builder;
     };
@@ -227,22 +243,27 @@ void readParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, con
         activated = activated && looksActivated(block->stored, layout.three_scales);
         builder.append(block->stored, block->active);
         done += block->stored.rows, in_part += block->stored.rows;
-        if (progress && ++count % kBlocksPerReport == 0) { progress(static_cast<double>(done) / static_cast<double>(vertex.count)); }
+        if (progress && ++count % kBlocksPerReport == 0) {
+            progress(static_cast<double>(done) / static_cast<double>(vertex.count));
+        }
     }
     if (progress) { progress(1.0); }
     end();
     notes.splats_in_file = vertex.count;
-    if (ply.header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[ply.header.vertical_axis]); }
+    if (ply.header.vertical_axis >= 0) {
+        notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[ply.header.vertical_axis]);
+    }
     if (layout.sh_degree_in_file > layout.sh_degree) {
-        notes.lines.push_back(
-            fmt::format("{}: SH of degree {} were left out, degree {} is kept", file.name(), layout.sh_degree_in_file, layout.sh_degree));
+        notes.lines.push_back(fmt::format("{}: SH of degree {} were left out, degree {} is kept", file.name(),
+                                          layout.sh_degree_in_file, layout.sh_degree));
     }
     if (moment.isDynamic()) { notes.lines.push_back(fmt::format("{}: {}", file.name(), moment.describe())); }
     if (activated) {
-        notes.lines.push_back(fmt::format(
-            "{}: all scales are positive and all opacities lie within 0 to 1: it looks as if it was written with the activations "
-            "applied; it was read as trainings write it, as logarithms and logits",
-            file.name()));
+        notes.lines.push_back(
+            fmt::format("{}: all scales are positive and all opacities lie within 0 to 1: it looks as if it "
+                        "was written with the activations "
+                        "applied; it was read as trainings write it, as logarithms and logits",
+                        file.name()));
     }
 }
 
@@ -259,11 +280,13 @@ std::uint64_t countPly(InputFile& file) { return OpenedPly(file).vertex.count; }
 
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     Scene scene;
-    readParts(file, std::numeric_limits<std::uint64_t>::max(), notes, progress, [&](Scene part) { scene = std::move(part); });
+    readParts(file, std::numeric_limits<std::uint64_t>::max(), notes, progress,
+              [&](Scene part) { scene = std::move(part); });
     return scene;
 }
 
-void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, const std::function<void(Scene)>& take) {
+void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes,
+                  const std::function<void(Scene)>& take) {
     readParts(file, part_splats, notes, {}, take);
 }
 

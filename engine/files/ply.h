@@ -22,7 +22,8 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 // The same in parts of about as many splats each, one after the other, for a scene larger than the memory. A
 // part has only the bands that its own splats use. The notes are about all parts.
-void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, const std::function<void(Scene)>& take);
+void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes,
+                  const std::function<void(Scene)>& take);
 
 // The number of splats that the header states.
 std::uint64_t countPly(InputFile& file);

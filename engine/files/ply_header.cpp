@@ -54,13 +54,17 @@ struct Line {
 
     template <typename... Args>
     void require(bool condition, fmt::format_string<Args...> format, Args&&... args) const {
-        if (!condition) { fail("{}: header line {}: {}", file, number, fmt::format(format, std::forward<Args>(args)...)); }
+        if (!condition) {
+            fail("{}: header line {}: {}", file, number, fmt::format(format, std::forward<Args>(args)...));
+        }
     }
 };
 
 Type parseType(const Line& line, std::string_view name) {
-    const auto* found = std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](const auto& entry) { return entry.first == name; });
-    line.require(found != kTypeNames.end(), "unknown type '{}', expected char, uchar, short, ushort, int, uint, float or double", name);
+    const auto* found = std::find_if(kTypeNames.begin(), kTypeNames.end(),
+                                     [&](const auto& entry) { return entry.first == name; });
+    line.require(found != kTypeNames.end(),
+                 "unknown type '{}', expected char, uchar, short, ushort, int, uint, float or double", name);
     return found->second;
 }
 
@@ -69,7 +73,8 @@ Encoding parseFormat(const Line& line) {
     line.require(line.words[2] == "1.0", "version is '{}', expected 1.0", line.words[2]);
     if (line.words[1] == "ascii") { return Encoding::kAscii; }
     if (line.words[1] == "binary_little_endian") { return Encoding::kLittleEndian; }
-    line.require(line.words[1] == "binary_big_endian", "unknown encoding '{}', expected ascii, binary_little_endian or binary_big_endian",
+    line.require(line.words[1] == "binary_big_endian",
+                 "unknown encoding '{}', expected ascii, binary_little_endian or binary_big_endian",
                  line.words[1]);
     return Encoding::kBigEndian;
 }
@@ -87,29 +92,40 @@ Element parseElement(const Line& line) {
 
 Property parseProperty(const Line& line) {
     const bool is_list = line.words.size() > 1 && line.words[1] == "list";
-    line.require(line.words.size() == (is_list ? 5u : 3u), "expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
+    line.require(line.words.size() == (is_list ? 5u : 3u),
+                 "expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
     Property property;
     property.is_list = is_list;
     if (is_list) { property.count_type = parseType(line, line.words[2]); }
-    line.require(!is_list || property.count_type < Type::kFloat32, "a list is counted by '{}', expected an integer type", line.words[2]);
+    line.require(!is_list || property.count_type < Type::kFloat32,
+                 "a list is counted by '{}', expected an integer type", line.words[2]);
     property.type = parseType(line, line.words[is_list ? 3 : 1]);
     property.name = line.words.back();
     return property;
 }
 
 bool equalsIgnoringCase(std::string_view a, std::string_view b) {
-    const auto lower = [](char letter) { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter; };
+    const auto lower = [](char letter) {
+        return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+    };
     return std::ranges::equal(a, b, {}, lower, lower);
 }
 
 // `words` of a comment line. Unknown comments are ignored.
 void readComment(std::span<const std::string_view> words, Header& header) {
-    if (words.size() == 2 && words[1].starts_with("postshot.anti_aliasing=")) { header.antialiased = words[1].ends_with("=1"); }
-    if (words.size() == 4 && equalsIgnoringCase(words[1], "vertical") && equalsIgnoringCase(words[2], "axis:")) {
-        header.vertical_axis = equalsIgnoringCase(words[3], "x") ? 0 : equalsIgnoringCase(words[3], "z") ? 2 : -1;
+    if (words.size() == 2 && words[1].starts_with("postshot.anti_aliasing=")) {
+        header.antialiased = words[1].ends_with("=1");
+    }
+    if (words.size() == 4 && equalsIgnoringCase(words[1], "vertical") &&
+        equalsIgnoringCase(words[2], "axis:")) {
+        header.vertical_axis = equalsIgnoringCase(words[3], "x")   ? 0
+                               : equalsIgnoringCase(words[3], "z") ? 2
+                                                                   : -1;
     }
     if (words.size() != 3) { return; }
-    if (equalsIgnoringCase(words[1], "SplatRenderMode:")) { header.antialiased = equalsIgnoringCase(words[2], "mip"); }
+    if (equalsIgnoringCase(words[1], "SplatRenderMode:")) {
+        header.antialiased = equalsIgnoringCase(words[2], "mip");
+    }
     if (equalsIgnoringCase(words[1], "antialiased")) { header.antialiased = words[2] == "1"; }
 }
 
@@ -121,7 +137,8 @@ std::size_t typeBytes(Type type) {
 }
 
 bool Element::hasList() const {
-    return std::any_of(properties.begin(), properties.end(), [](const Property& property) { return property.is_list; });
+    return std::any_of(properties.begin(), properties.end(),
+                       [](const Property& property) { return property.is_list; });
 }
 
 std::size_t Element::rowBytes() const {
@@ -136,9 +153,11 @@ Header readHeader(InputFile& file) {
     std::string_view text;
     for (bool magic_seen = false;;) {
         const InputFile::LineEnd end = file.readLine(text);
-        check(end == InputFile::LineEnd::kBreak, "{}: header: the file ends after line {} without an end_header line", file.name(),
+        check(end == InputFile::LineEnd::kBreak,
+              "{}: header: the file ends after line {} without an end_header line", file.name(),
               header.line_count);
-        check(file.positionBytes() <= kMaxHeaderBytes, "{}: header: no end_header line within the first MiB", file.name());
+        check(file.positionBytes() <= kMaxHeaderBytes, "{}: header: no end_header line within the first MiB",
+              file.name());
         const Line line{file.name(), ++header.line_count, splitWords(text)};
         if (!magic_seen) {
             line.require(withoutByteOrderMark(text) == "ply", "expected 'ply'");
@@ -158,10 +177,14 @@ Header readHeader(InputFile& file) {
             line.require(!header.elements.empty(), "a property before any element");
             header.elements.back().properties.push_back(parseProperty(line));
         } else {
-            line.require(false, "unknown keyword '{}', expected format, element, property, comment, obj_info or end_header", keyword);
+            line.require(
+                false,
+                "unknown keyword '{}', expected format, element, property, comment, obj_info or end_header",
+                keyword);
         }
     }
-    check(encoding.has_value(), "{}: header: no format line, expected one of ascii, binary_little_endian or binary_big_endian",
+    check(encoding.has_value(),
+          "{}: header: no format line, expected one of ascii, binary_little_endian or binary_big_endian",
           file.name());
     header.encoding = *encoding;
     return header;

@@ -27,7 +27,8 @@ T loadValue(const std::byte* source) {
 // One property of a block: rows are `stride` bytes apart, and values in the block `step` apart. `zero` is
 // subtracted from a float64.
 template <typename T, bool kSwap>
-void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target, std::size_t step, double zero) {
+void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target,
+                   std::size_t step, double zero) {
     for (std::size_t row = 0; row < rows; ++row) {
         const T value = loadValue<T, kSwap>(source + row * stride);
         if constexpr (std::is_same_v<T, double>) {
@@ -63,18 +64,24 @@ ConvertColumn selectConversion(Type type) {
     return nullptr;
 }
 
-bool needsSwap(Encoding encoding) { return (encoding == Encoding::kLittleEndian) != (std::endian::native == std::endian::little); }
+bool needsSwap(Encoding encoding) {
+    return (encoding == Encoding::kLittleEndian) != (std::endian::native == std::endian::little);
+}
 
 class BinaryRows final : public RowReader {
 public:
     BinaryRows(InputFile& file, Encoding encoding, const Element& element, const std::vector<Column>& columns)
         : file_(file), total_(element.count), stride_(element.rowBytes()) {
         std::vector<std::size_t> offsets(element.properties.size());
-        for (std::size_t i = 1; i < offsets.size(); ++i) { offsets[i] = offsets[i - 1] + typeBytes(element.properties[i - 1].type); }
+        for (std::size_t i = 1; i < offsets.size(); ++i) {
+            offsets[i] = offsets[i - 1] + typeBytes(element.properties[i - 1].type);
+        }
         for (const Column& column : columns) {
             const Type type = element.properties[column.property].type;
-            columns_.push_back({offsets[column.property],
-                                needsSwap(encoding) ? selectConversion<true>(type) : selectConversion<false>(type), column.attribute});
+            columns_.push_back(
+                {offsets[column.property],
+                 needsSwap(encoding) ? selectConversion<true>(type) : selectConversion<false>(type),
+                 column.attribute});
             if (column.attribute < kStoredRest0) { continue; }
             const auto i = static_cast<std::size_t>(column.attribute - kStoredRest0);
             const bool in_place = type == Type::kFloat32 && !needsSwap(encoding) && i == rest_count_ &&
@@ -84,7 +91,8 @@ public:
         }
         // Values that are laid out in the file as in a block are copied together.
         std::erase_if(columns_, [&](const Source& source) {
-            return source.attribute >= kStoredRest0 && static_cast<std::size_t>(source.attribute - kStoredRest0) < rest_count_;
+            return source.attribute >= kStoredRest0 &&
+                   static_cast<std::size_t>(source.attribute - kStoredRest0) < rest_count_;
         });
     }
 
@@ -94,7 +102,8 @@ public:
         for (std::size_t done = 0; done < block.rows;) {
             const std::size_t rows = std::min(rows_at_once, block.rows - done);
             const std::span<const std::byte> bytes = file_.readBlock(rows * stride_);
-            check(bytes.size() == rows * stride_, "{}: data: ends in splat {} of {}", file_.name(), done_ + bytes.size() / stride_, total_);
+            check(bytes.size() == rows * stride_, "{}: data: ends in splat {} of {}", file_.name(),
+                  done_ + bytes.size() / stride_, total_);
             convert(bytes.data(), rows, block, done);
             done += rows;
             done_ += rows;
@@ -126,11 +135,14 @@ private:
     void convert(const std::byte* source, std::size_t rows, StoredBlock& block, std::size_t first) const {
         for (const Source& one : columns_) {
             const bool is_rest = one.attribute >= kStoredRest0;
-            float* target = is_rest ? block.rest(first) + (one.attribute - kStoredRest0) : block.column(one.attribute) + first;
-            one.convert(source + one.offset, stride_, rows, target, is_rest ? StoredBlock::kRestStride : 1, one.zero);
+            float* target = is_rest ? block.rest(first) + (one.attribute - kStoredRest0)
+                                    : block.column(one.attribute) + first;
+            one.convert(source + one.offset, stride_, rows, target, is_rest ? StoredBlock::kRestStride : 1,
+                        one.zero);
         }
         for (std::size_t row = 0; rest_count_ > 0 && row < rows; ++row) {
-            std::memcpy(block.rest(first + row), source + row * stride_ + rest_offset_, rest_count_ * sizeof(float));
+            std::memcpy(block.rest(first + row), source + row * stride_ + rest_offset_,
+                        rest_count_ * sizeof(float));
         }
     }
 
@@ -162,8 +174,8 @@ bool takeNumber(std::string_view& text, double& value) {
     // Beyond float64's range, from_chars leaves the value unset; all that matters is whether the exponent was
     // negative.
     if (error == std::errc::result_out_of_range) {
-        const bool tiny =
-            text.substr(0, length).find("e-") != std::string_view::npos || text.substr(0, length).find("E-") != std::string_view::npos;
+        const bool tiny = text.substr(0, length).find("e-") != std::string_view::npos ||
+                          text.substr(0, length).find("E-") != std::string_view::npos;
         value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
     }
     text.remove_prefix(length);
@@ -183,31 +195,37 @@ public:
             InputFile::LineEnd end{};
             do {
                 end = file_.readLine(text);
-            } while (end == InputFile::LineEnd::kBreak && text.find_first_not_of(" \t") == std::string_view::npos);
-            check(end != InputFile::LineEnd::kNoLine, "{}: data: ends before splat {} of {}", file_.name(), done_, element_.count);
+            } while (end == InputFile::LineEnd::kBreak &&
+                     text.find_first_not_of(" \t") == std::string_view::npos);
+            check(end != InputFile::LineEnd::kNoLine, "{}: data: ends before splat {} of {}", file_.name(),
+                  done_, element_.count);
             // A number that is cut short is still a number; only the line break shows that the last one is
             // whole.
-            check(end == InputFile::LineEnd::kBreak, "{}: data: ends in splat {} of {}: its line has no line break", file_.name(), done_,
+            check(end == InputFile::LineEnd::kBreak,
+                  "{}: data: ends in splat {} of {}: its line has no line break", file_.name(), done_,
                   element_.count);
             for (std::size_t i = 0; i < attribute_of_.size(); ++i) {
                 double value = 0.0;
                 const std::string_view rest = text;
-                check(takeNumber(text, value), "{}: splat {} of {}: property {} is '{}', expected a number", file_.name(), done_,
-                      element_.count, element_.properties[i].name, firstWord(rest));
+                check(takeNumber(text, value), "{}: splat {} of {}: property {} is '{}', expected a number",
+                      file_.name(), done_, element_.count, element_.properties[i].name, firstWord(rest));
                 put(block, attribute_of_[i], row, value);
             }
             check(text.find_first_not_of(" \t") == std::string_view::npos,
-                  "{}: splat {} of {}: more than the expected {} values in its line", file_.name(), done_, element_.count,
-                  attribute_of_.size());
+                  "{}: splat {} of {}: more than the expected {} values in its line", file_.name(), done_,
+                  element_.count, attribute_of_.size());
         }
     }
 
     void sample(StoredBlock& block) const override {
         std::string_view ahead = file_.peek(kSampleBytes);
-        const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, element_.count));
+        const auto most =
+            static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, element_.count));
         block.rows = 0;
-        for (std::size_t end = 0; block.rows < most && (end = ahead.find('\n')) != std::string_view::npos; ahead.remove_prefix(end + 1)) {
-            std::string_view text = ahead.substr(0, ahead[std::max<std::size_t>(end, 1) - 1] == '\r' ? end - 1 : end);
+        for (std::size_t end = 0; block.rows < most && (end = ahead.find('\n')) != std::string_view::npos;
+             ahead.remove_prefix(end + 1)) {
+            std::string_view text =
+                ahead.substr(0, ahead[std::max<std::size_t>(end, 1) - 1] == '\r' ? end - 1 : end);
             if (text.find_first_not_of(" \t") == std::string_view::npos) { continue; }
             for (const int attribute : attribute_of_) {
                 double value = 0.0;
@@ -223,7 +241,8 @@ public:
 private:
     void put(StoredBlock& block, int attribute, std::size_t row, double value) const {
         if (attribute < 0) { return; }
-        block.put(attribute, row, static_cast<float>(attribute <= kStoredZ ? value - origin_[attribute] : value));
+        block.put(attribute, row,
+                  static_cast<float>(attribute <= kStoredZ ? value - origin_[attribute] : value));
     }
 
     static constexpr std::size_t kSampleBytes = std::size_t{1} << 18;
@@ -246,10 +265,11 @@ private:
 };
 
 // The count at the start of a binary list.
-std::uint64_t readListCount(InputFile& file, Encoding encoding, const Element& element, const Property& property) {
+std::uint64_t readListCount(InputFile& file, Encoding encoding, const Element& element,
+                            const Property& property) {
     const std::span<const std::byte> bytes = file.readBlock(typeBytes(property.count_type));
-    check(bytes.size() == typeBytes(property.count_type), "{}: data: ends in element {}, list {}", file.name(), element.name,
-          property.name);
+    check(bytes.size() == typeBytes(property.count_type), "{}: data: ends in element {}, list {}",
+          file.name(), element.name, property.name);
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         const std::size_t at = encoding == Encoding::kBigEndian ? i : bytes.size() - 1 - i;
@@ -265,40 +285,46 @@ void skipElement(InputFile& file, Encoding encoding, const Element& element) {
     if (encoding == Encoding::kAscii) {
         std::string_view text;
         for (std::uint64_t row = 0; row < element.count;) {
-            check(file.readLine(text) == InputFile::LineEnd::kBreak, "{}: data: ends in row {} of {} of element {}", file.name(), row,
-                  element.count, element.name);
+            check(file.readLine(text) == InputFile::LineEnd::kBreak,
+                  "{}: data: ends in row {} of {} of element {}", file.name(), row, element.count,
+                  element.name);
             row += text.find_first_not_of(" \t") != std::string_view::npos;
         }
         return;
     }
     if (!element.hasList()) {
         check(element.count <= file.bytesLeft() / element.rowBytes(),
-              "{}: data: {} rows of element {} take {} bytes each, but only {} bytes are left", file.name(), element.count, element.name,
-              element.rowBytes(), file.bytesLeft());
+              "{}: data: {} rows of element {} take {} bytes each, but only {} bytes are left", file.name(),
+              element.count, element.name, element.rowBytes(), file.bytesLeft());
         file.skip(element.count * element.rowBytes());
         return;
     }
     for (std::uint64_t row = 0; row < element.count; ++row) {
         for (const Property& property : element.properties) {
-            const std::uint64_t items = property.is_list ? readListCount(file, encoding, element, property) : 1;
-            check(items <= file.bytesLeft() / typeBytes(property.type), "{}: data: ends in row {} of {} of element {}", file.name(), row,
-                  element.count, element.name);
+            const std::uint64_t items =
+                property.is_list ? readListCount(file, encoding, element, property) : 1;
+            check(items <= file.bytesLeft() / typeBytes(property.type),
+                  "{}: data: ends in row {} of {} of element {}", file.name(), row, element.count,
+                  element.name);
             file.skip(items * typeBytes(property.type));
         }
     }
 }
 
-std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element, std::vector<Column> columns) {
+std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element,
+                                    std::vector<Column> columns) {
     const std::uint64_t left = file.bytesLeft();
     if (header.encoding == Encoding::kAscii) {
         // The shortest row has one digit and one separator per property.
         const std::uint64_t shortest = 2 * element.properties.size();
-        check(element.count <= left / shortest, "{}: data: ends before splat {} of {}: {} bytes are left, at least {} per splat expected",
+        check(element.count <= left / shortest,
+              "{}: data: ends before splat {} of {}: {} bytes are left, at least {} per splat expected",
               file.name(), left / shortest, element.count, left, shortest);
         return std::make_unique<AsciiRows>(file, element, columns);
     }
     const std::uint64_t stride = element.rowBytes();
-    check(element.count <= left / stride, "{}: data: ends in splat {} of {}: {} bytes are left, {} per splat expected", file.name(),
+    check(element.count <= left / stride,
+          "{}: data: ends in splat {} of {}: {} bytes are left, {} per splat expected", file.name(),
           left / stride, element.count, left, stride);
     return std::make_unique<BinaryRows>(file, header.encoding, element, columns);
 }

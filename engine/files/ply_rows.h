@@ -34,6 +34,7 @@ void skipElement(InputFile& file, Encoding encoding, const Element& element);
 
 // Checks the element's size against the rest of the file, then returns its reader. The element must not have
 // a list.
-std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element, std::vector<Column> columns);
+std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element,
+                                    std::vector<Column> columns);
 
 }  // namespace binosplat::ply

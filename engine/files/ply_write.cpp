@@ -19,7 +19,8 @@ bool isFar(const Scene& scene) { return scene.origin != glm::dvec3(0.0); }
 // As two float32 with the same bytes, the lower half first.
 std::array<float, 2> halvesOf(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
-    return {std::bit_cast<float>(static_cast<std::uint32_t>(bits)), std::bit_cast<float>(static_cast<std::uint32_t>(bits >> 32))};
+    return {std::bit_cast<float>(static_cast<std::uint32_t>(bits)),
+            std::bit_cast<float>(static_cast<std::uint32_t>(bits >> 32))};
 }
 
 std::string makeHeader(const Scene& scene) {
@@ -30,9 +31,13 @@ std::string makeHeader(const Scene& scene) {
                                                                 : "",
                                      scene.size());
     const auto property = [&header](const std::string& name) { header += "property float " + name + "\n"; };
-    for (const char* name : {"x", "y", "z"}) { header += fmt::format("property {} {}\n", isFar(scene) ? "double" : "float", name); }
+    for (const char* name : {"x", "y", "z"}) {
+        header += fmt::format("property {} {}\n", isFar(scene) ? "double" : "float", name);
+    }
     for (const char* name : {"nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) { property(name); }
-    for (int i = 0; i < 3 * (shCoefficientCount(scene.sh_degree) - 1); ++i) { property(fmt::format("f_rest_{}", i)); }
+    for (int i = 0; i < 3 * (shCoefficientCount(scene.sh_degree) - 1); ++i) {
+        property(fmt::format("f_rest_{}", i));
+    }
     for (const char* name : {"opacity", "scale_0", "scale_1"}) { property(name); }
     if (scene.isGaussian3d()) { property("scale_2"); }
     for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) { property(name); }
@@ -41,7 +46,9 @@ std::string makeHeader(const Scene& scene) {
 
 // Appends one splat's row; returns the end of it.
 float* putRow(const Scene& scene, std::size_t splat, float* row) {
-    const auto put = [&row](std::initializer_list<float> values) { row = std::copy(values.begin(), values.end(), row); };
+    const auto put = [&row](std::initializer_list<float> values) {
+        row = std::copy(values.begin(), values.end(), row);
+    };
     const glm::vec3& p = scene.positions[splat];
     const glm::quat& q = scene.rotations[splat];
     const glm::vec3 normal = q * glm::vec3(0.0f, 0.0f, 1.0f);
@@ -59,7 +66,8 @@ float* putRow(const Scene& scene, std::size_t splat, float* row) {
     for (std::size_t channel = 0; channel < 3; ++channel) {
         for (std::size_t k = 1; k < coefficients; ++k) { *row++ = sh[3 * k + channel]; }
     }
-    put({storedOpacity(scene.opacities[splat]), storedScale(scene.scales[splat].x), storedScale(scene.scales[splat].y)});
+    put({storedOpacity(scene.opacities[splat]), storedScale(scene.scales[splat].x),
+         storedScale(scene.scales[splat].y)});
     if (scene.isGaussian3d()) { put({storedScale(scene.thicknesses[splat])}); }
     put({q.w, q.x, q.y, q.z});
     return row;
@@ -68,14 +76,16 @@ float* putRow(const Scene& scene, std::size_t splat, float* row) {
 }  // namespace
 
 void writePly(const Scene& scene, const std::string& path, const Progress& progress) {
-    check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
+    check(!scene.is_linear,
+          "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path,
+          scene.name);
     PartFile file(path);
     const std::string header = makeHeader(scene);
     file.write(header.data(), header.size());
 
     constexpr std::size_t kBlockRows = 4096;
-    const std::size_t width =
-        (scene.isGaussian3d() ? 17 : 16) + (isFar(scene) ? 3 : 0) + 3 * (static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)) - 1);
+    const std::size_t width = (scene.isGaussian3d() ? 17 : 16) + (isFar(scene) ? 3 : 0) +
+                              3 * (static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)) - 1);
     std::vector<float> rows(kBlockRows * width);
     for (std::size_t done = 0; done < scene.size();) {
         if (progress) { progress(static_cast<double>(done) / static_cast<double>(scene.size())); }

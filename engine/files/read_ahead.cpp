@@ -6,7 +6,8 @@
 
 namespace binosplat {
 
-ReadAhead::ReadAhead(std::uint64_t rows, std::function<void(Block&)> fill) : rows_left_(rows), fill_(std::move(fill)) {
+ReadAhead::ReadAhead(std::uint64_t rows, std::function<void(Block&)> fill)
+    : rows_left_(rows), fill_(std::move(fill)) {
     const bool threaded = rows > 2 * std::tuple_size_v<decltype(Batch::blocks)> * StoredBlock::kRows;
     batches_.resize(threaded ? kBatches : 1);
     if (threaded) { thread_ = std::thread(&ReadAhead::run, this); }
@@ -23,7 +24,8 @@ void ReadAhead::fillBatch(Batch& batch) {
     try {
         for (; batch.count < batch.blocks.size() && rows_left_ > 0; ++batch.count) {
             Block& block = batch.blocks[batch.count];
-            block.stored.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, rows_left_));
+            block.stored.rows =
+                static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, rows_left_));
             fill_(block);
             rows_left_ -= block.stored.rows;
         }

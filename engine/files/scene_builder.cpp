@@ -57,7 +57,9 @@ void SceneBuilder::activate(const StoredBlock& block, ActiveBlock& active) const
 }
 
 void SceneBuilder::append(const StoredBlock& block, const ActiveBlock& active) {
-    const auto appendTo = [&](auto& values, const auto& kept) { values.insert(values.end(), kept.data(), kept.data() + active.count); };
+    const auto appendTo = [&](auto& values, const auto& kept) {
+        values.insert(values.end(), kept.data(), kept.data() + active.count);
+    };
     appendTo(scene_.positions, active.positions);
     appendTo(scene_.rotations, active.rotations);
     appendTo(scene_.scales, active.scales);
@@ -77,7 +79,9 @@ void gatherSh(const StoredBlock& block, std::size_t row, int in_file, float* tar
     const float* rest = block.rest(row);
     for (int channel = 0; channel < 3; ++channel) {
         target[channel] = block.column(kStoredDc0 + channel)[row];
-        for (int k = 1; k < kCoefficients; ++k) { target[3 * k + channel] = rest[channel * (in_file - 1) + k - 1]; }
+        for (int k = 1; k < kCoefficients; ++k) {
+            target[3 * k + channel] = rest[channel * (in_file - 1) + k - 1];
+        }
     }
 }
 
@@ -129,16 +133,17 @@ void SceneBuilder::measureFlatness() {
 Scene SceneBuilder::finish(LoadNotes& notes) {
     if (notes_.three_scales) { measureFlatness(); }
     if (notes_.skipped_not_finite > 0) {
-        notes_.lines.push_back(fmt::format("{}: {} of {} splats skipped: NaN or infinity in an attribute", scene_.name,
-                                           notes_.skipped_not_finite, notes_.splats_in_file));
+        notes_.lines.push_back(fmt::format("{}: {} of {} splats skipped: NaN or infinity in an attribute",
+                                           scene_.name, notes_.skipped_not_finite, notes_.splats_in_file));
     }
     if (notes_.skipped_zero_rotation > 0) {
-        notes_.lines.push_back(fmt::format("{}: {} of {} splats skipped: rotation of length zero", scene_.name,
-                                           notes_.skipped_zero_rotation, notes_.splats_in_file));
+        notes_.lines.push_back(fmt::format("{}: {} of {} splats skipped: rotation of length zero",
+                                           scene_.name, notes_.skipped_zero_rotation, notes_.splats_in_file));
     }
     if (scene_.sh_degree < notes_.sh_degree_in_file) {
-        notes_.lines.push_back(fmt::format("{}: SH bands above degree {} are all zero and were left out (the file has degree {})",
-                                           scene_.name, scene_.sh_degree, notes_.sh_degree_in_file));
+        notes_.lines.push_back(fmt::format(
+            "{}: SH bands above degree {} are all zero and were left out (the file has degree {})",
+            scene_.name, scene_.sh_degree, notes_.sh_degree_in_file));
     }
     scene_.sh.shrink_to_fit();
     notes = std::move(notes_);
@@ -151,7 +156,8 @@ void setOrigin(Scene& scene, const glm::dvec3& origin, LoadNotes& notes) {
     scene.origin = origin;
     if (origin == glm::dvec3(0.0)) { return; }
     notes.lines.push_back(
-        fmt::format("{}: its positions are far from 0: in memory, as float32, they count from {}", scene.name, describeOrigin(scene)));
+        fmt::format("{}: its positions are far from 0: in memory, as float32, they count from {}", scene.name,
+                    describeOrigin(scene)));
 }
 
 void takeAsDiscs(Scene& scene, LoadNotes& notes) {

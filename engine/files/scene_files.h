@@ -18,7 +18,8 @@ public:
     virtual ~SceneFiles() = default;
     // Waits until the whole file is there. Throws Error if it cannot be fetched, or is longer than
     // `most_bytes`.
-    [[nodiscard]] virtual std::unique_ptr<InputFile> open(const std::string& name, std::uint64_t most_bytes = kAnyLength) = 0;
+    [[nodiscard]] virtual std::unique_ptr<InputFile> open(const std::string& name,
+                                                          std::uint64_t most_bytes = kAnyLength) = 0;
     // They will be opened soon; requests all of them at once.
     virtual void expect(const std::vector<std::string>& names, std::uint64_t most_bytes = kAnyLength) = 0;
     // The file's name in messages.

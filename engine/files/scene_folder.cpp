@@ -38,7 +38,9 @@ struct Checkpoint {
 
 // The part between a name's front and its end, if it is all digits.
 std::string_view digitsOf(std::string_view name, std::string_view front, std::string_view end) {
-    if (!name.starts_with(front) || !name.ends_with(end) || name.size() <= front.size() + end.size()) { return {}; }
+    if (!name.starts_with(front) || !name.ends_with(end) || name.size() <= front.size() + end.size()) {
+        return {};
+    }
     const std::string_view digits = name.substr(front.size(), name.size() - front.size() - end.size());
     return std::ranges::all_of(digits, isDigit) ? digits : std::string_view();
 }
@@ -51,7 +53,9 @@ std::vector<Checkpoint> findIterations(const fs::path& folder) {
         const std::string name = entry->path().filename().string();
         const std::string_view digits = digitsOf(name, "iteration_", "");
         const fs::path scene = entry->path() / "point_cloud.ply";
-        if (!digits.empty() && fs::is_regular_file(scene, ignored)) { found.push_back({numberOf(digits), scene}); }
+        if (!digits.empty() && fs::is_regular_file(scene, ignored)) {
+            found.push_back({numberOf(digits), scene});
+        }
     }
     return found;
 }
@@ -88,13 +92,17 @@ std::optional<TrainingOutput> findTrainingOutput(const fs::path& folder) {
     if (found.empty()) { return std::nullopt; }
     std::ranges::sort(found, std::greater{}, &Checkpoint::number);
     TrainingOutput output{found.front().scene.string(), "", {}};
-    for (const Checkpoint& older : std::span(found).subspan(1)) { output.older.push_back(older.scene.lexically_relative(folder).string()); }
+    for (const Checkpoint& older : std::span(found).subspan(1)) {
+        output.older.push_back(older.scene.lexically_relative(folder).string());
+    }
     // The path may end with a slash.
     const fs::path named = folder.has_filename() ? folder : folder.parent_path();
     std::error_code ignored;
     for (const fs::path& place : {named, named.filename() == "point_cloud" ? named.parent_path() : named}) {
         const fs::path cameras = place / "cameras.json";
-        if (output.cameras.empty() && fs::is_regular_file(cameras, ignored)) { output.cameras = cameras.string(); }
+        if (output.cameras.empty() && fs::is_regular_file(cameras, ignored)) {
+            output.cameras = cameras.string();
+        }
     }
     return output;
 }
@@ -106,7 +114,8 @@ fs::path findCameraFile(const fs::path& scene) {
     if (error) { return {}; }
     if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
     const fs::path folder = whole.parent_path();
-    const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
+    const bool is_trained = folder.filename().string().starts_with("iteration_") &&
+                            folder.parent_path().filename() == "point_cloud";
     // A training's output is complete: what lies beside its folder belongs to another one.
     const fs::path beside = is_trained ? folder.parent_path().parent_path() : folder;
     std::vector<fs::path> places{whole, beside};
@@ -117,7 +126,8 @@ fs::path findCameraFile(const fs::path& scene) {
     for (const fs::path& place : places) {
         if (!fs::is_regular_file(place / "cameras.json", error)) { continue; }
         // As the scene was named.
-        return scene.is_absolute() ? place / "cameras.json" : (place / "cameras.json").lexically_proximate(fs::current_path());
+        return scene.is_absolute() ? place / "cameras.json"
+                                   : (place / "cameras.json").lexically_proximate(fs::current_path());
     }
     return {};
 }
@@ -127,7 +137,8 @@ std::optional<std::string> findOnlyScene(const fs::path& folder) {
     int files = 0;
     std::error_code error, ignored;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        if (!mayHaveScene(entry->path()) || entry->path().filename().string().starts_with('.') || !entry->is_regular_file(ignored)) {
+        if (!mayHaveScene(entry->path()) || entry->path().filename().string().starts_with('.') ||
+            !entry->is_regular_file(ignored)) {
             continue;
         }
         if (++files > kMostFilesOpened) { return std::nullopt; }
@@ -151,13 +162,14 @@ std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder)
         const std::string name = entry->path().filename().string();
         if (name.starts_with('.') || !entry->is_regular_file(ignored)) { continue; }
         for (std::size_t begin = 0, stop = 0; begin < name.size(); begin = stop + 1) {
-            begin = static_cast<std::size_t>(std::find_if(name.begin() + static_cast<std::ptrdiff_t>(begin), name.end(), isDigit) -
-                                             name.begin());
+            begin = static_cast<std::size_t>(
+                std::find_if(name.begin() + static_cast<std::ptrdiff_t>(begin), name.end(), isDigit) -
+                name.begin());
             stop = std::min(name.find_first_not_of("0123456789", begin), name.size());
             if (begin == stop) { break; }
             // File names do not contain slashes.
-            groups[name.substr(0, begin) + '/' + name.substr(stop)].emplace(numberOf(std::string_view(name).substr(begin, stop - begin)),
-                                                                            entry->path().string());
+            groups[name.substr(0, begin) + '/' + name.substr(stop)].emplace(
+                numberOf(std::string_view(name).substr(begin, stop - begin)), entry->path().string());
         }
     }
     std::vector<std::vector<NumberedFile>> found;
@@ -167,11 +179,15 @@ std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder)
         for (const auto& [digits, file] : files) {
             std::uint64_t number = 0;  // if there are only zeros
             const char* const begin = digits.second.data();
-            if (std::from_chars(begin, begin + digits.second.size(), number).ec == std::errc::result_out_of_range) { number = ~number; }
+            if (std::from_chars(begin, begin + digits.second.size(), number).ec ==
+                std::errc::result_out_of_range) {
+                number = ~number;
+            }
             group.push_back({file, number});
         }
     }
-    std::ranges::stable_sort(found, std::greater{}, [](const std::vector<NumberedFile>& group) { return group.size(); });
+    std::ranges::stable_sort(found, std::greater{},
+                             [](const std::vector<NumberedFile>& group) { return group.size(); });
     return found;
 }
 

@@ -55,8 +55,8 @@ glm::dvec3 originOf(const std::string& path) {
 
 bool isMovingScene(const std::string& source) {
     std::error_code error;
-    if (isAddress(source) || !fs::is_directory(source, error) || isStreamedSogFolder(source) || isSogFolder(source) ||
-        findTrainingOutput(source)) {
+    if (isAddress(source) || !fs::is_directory(source, error) || isStreamedSogFolder(source) ||
+        isSogFolder(source) || findTrainingOutput(source)) {
         return false;
     }
     return !findSceneGroups(source).empty();
@@ -66,23 +66,30 @@ SceneSeries::SceneSeries(const std::string& source) : name_(source) {
     const std::vector<std::vector<NumberedFile>> groups = findSceneGroups(name_);
     check(!groups.empty(), "{}: has no numbered files of one format, expected a moving scene", name_);
     check(groups.size() < 2 || groups[1].size() < groups[0].size(),
-          "{}: {} to {} are numbered files, and so are {} to {}, expected one moving scene", name_, shortName(groups[0].front().path),
-          shortName(groups[0].back().path), groups.size() < 2 ? "" : shortName(groups[1].front().path),
+          "{}: {} to {} are numbered files, and so are {} to {}, expected one moving scene", name_,
+          shortName(groups[0].front().path), shortName(groups[0].back().path),
+          groups.size() < 2 ? "" : shortName(groups[1].front().path),
           groups.size() < 2 ? "" : shortName(groups[1].back().path));
     const std::vector<NumberedFile>& files = groups[0];
     format_ = formatOfFile(files.front().path);
     origin_ = originOf(files.front().path);
     std::uint64_t step = ~std::uint64_t{0};
-    for (std::size_t i = 1; i < files.size(); ++i) { step = std::min(step, files[i].number - files[i - 1].number); }
+    for (std::size_t i = 1; i < files.size(); ++i) {
+        step = std::min(step, files[i].number - files[i - 1].number);
+    }
     step = std::max<std::uint64_t>(step, 1);
     const bool is_regular =
         (files.back().number - files.front().number) / step < kMostFramesAFile * files.size() &&
-        std::ranges::all_of(files, [&](const NumberedFile& file) { return (file.number - files.front().number) % step == 0; });
+        std::ranges::all_of(files, [&](const NumberedFile& file) {
+            return (file.number - files.front().number) % step == 0;
+        });
     std::vector<std::string> before_missing;
     double first_bytes = 0.0;
     for (const NumberedFile& file : files) {
         while (is_regular && files.front().number + frames_.size() * step < file.number) {
-            if (before_missing.empty() || before_missing.back() != scenes_.back()) { before_missing.push_back(scenes_.back()); }
+            if (before_missing.empty() || before_missing.back() != scenes_.back()) {
+                before_missing.push_back(scenes_.back());
+            }
             frames_.push_back(scenes_.size() - 1);
         }
         frames_.push_back(scenes_.size());
@@ -94,15 +101,17 @@ SceneSeries::SceneSeries(const std::string& source) : name_(source) {
         growth_ = std::max(growth_, bytes / first_bytes);
     }
     if (!before_missing.empty()) {
-        lines_.push_back(
-            fmt::format("{}: {} of {} numbered files are missing, the first after {}: the frame before a missing one is shown for longer",
-                        name_, frames_.size() - scenes_.size(), frames_.size(), shortName(before_missing.front())));
+        lines_.push_back(fmt::format(
+            "{}: {} of {} numbered files are missing, the first after {}: the frame before a missing one is "
+            "shown for longer",
+            name_, frames_.size() - scenes_.size(), frames_.size(), shortName(before_missing.front())));
     }
 }
 
 Scene SceneSeries::load(std::size_t scene, LoadNotes& notes, const Progress& progress) const {
     Scene loaded = loadScene(scenes_[scene], 0, &notes, progress);
-    check(notes.format == format_, "{}: {}, the moving scene's first file is {}", scenes_[scene], notes.format, format_);
+    check(notes.format == format_, "{}: {}, the moving scene's first file is {}", scenes_[scene],
+          notes.format, format_);
     countFrom(loaded, origin_);
     return loaded;
 }

@@ -34,7 +34,9 @@ SceneSpill::SceneSpill(std::filesystem::path folder) : folder_(std::move(folder)
 
 SceneSpill::~SceneSpill() { removeFolder(folder_); }
 
-std::string SceneSpill::fileOf(std::size_t scene) const { return (folder_ / fmt::format("{}", scene)).string(); }
+std::string SceneSpill::fileOf(std::size_t scene) const {
+    return (folder_ / fmt::format("{}", scene)).string();
+}
 
 void SceneSpill::add(std::size_t scene, const Scene& part) {
     std::ofstream file(fileOf(scene), std::ios::binary | std::ios::app);

@@ -24,13 +24,17 @@ void addAxis(const Scene& scene, std::vector<std::string>& losses) {
 
 // Properties that none of the formats can store.
 void addUnsaid(const Scene& scene, std::vector<std::string>& losses) {
-    if (scene.by_distance) { losses.emplace_back("that splats are blended by distance (render it with --order distance)"); }
+    if (scene.by_distance) {
+        losses.emplace_back("that splats are blended by distance (render it with --order distance)");
+    }
     if (scene.y_up) { losses.emplace_back("that y is up (render it with --up 0,1,0)"); }
 }
 
 // Formats without float64.
 void addOrigin(const Scene& scene, std::vector<std::string>& losses) {
-    if (scene.origin != glm::dvec3(0.0)) { losses.push_back("that its positions count from " + describeOrigin(scene)); }
+    if (scene.origin != glm::dvec3(0.0)) {
+        losses.push_back("that its positions count from " + describeOrigin(scene));
+    }
 }
 
 std::string describePlyLoss(const Scene& scene) {
@@ -40,11 +44,13 @@ std::string describePlyLoss(const Scene& scene) {
 }
 
 std::string describeSpzLoss(const Scene& scene) {
-    std::vector<std::string> losses{
-        fmt::format("positions in steps of {:.3g} units, scales of 6 %", std::ldexp(1.0, -spzFractionalBits(scene))),
-        "colours and opacities of 8 bits", "rotations of 10 bits a component"};
+    std::vector<std::string> losses{fmt::format("positions in steps of {:.3g} units, scales of 6 %",
+                                                std::ldexp(1.0, -spzFractionalBits(scene))),
+                                    "colours and opacities of 8 bits", "rotations of 10 bits a component"};
     if (scene.sh_degree > 0) { losses.emplace_back("harmonics from -1 to 1 in steps of 1/128"); }
-    if (!scene.isGaussian3d()) { losses.emplace_back("that its splats are discs (render it with --flatten)"); }
+    if (!scene.isGaussian3d()) {
+        losses.emplace_back("that its splats are discs (render it with --flatten)");
+    }
     addAxis(scene, losses);
     addOrigin(scene, losses);
     addUnsaid(scene, losses);
@@ -52,10 +58,12 @@ std::string describeSpzLoss(const Scene& scene) {
 }
 
 std::string describeSogLoss(const Scene& scene) {
-    std::vector<std::string> losses{"the order of the splats", "positions of 16 bits over the logarithm of the scene's extent",
-                                    "scales and colours of 256 values each", "rotations and opacities of 8 bits"};
+    std::vector<std::string> losses{
+        "the order of the splats", "positions of 16 bits over the logarithm of the scene's extent",
+        "scales and colours of 256 values each", "rotations and opacities of 8 bits"};
     if (scene.sh_degree > 0) {
-        losses.emplace_back(fmt::format("harmonics of {} rows at most for {} splats", sogPaletteSize(scene), scene.size()));
+        losses.emplace_back(
+            fmt::format("harmonics of {} rows at most for {} splats", sogPaletteSize(scene), scene.size()));
     }
     addAxis(scene, losses);
     addOrigin(scene, losses);

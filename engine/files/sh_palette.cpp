@@ -63,12 +63,15 @@ Cluster measure(const Rows& rows, std::span<const std::uint32_t> order, std::siz
 
 // The direction in which a cluster is longest: two steps of power iteration, starting with the number that
 // varies most.
-std::array<float, kMostNumbers> longestAxis(const Rows& rows, std::span<const std::uint32_t> order, const Cluster& cluster) {
+std::array<float, kMostNumbers> longestAxis(const Rows& rows, std::span<const std::uint32_t> order,
+                                            const Cluster& cluster) {
     const std::size_t step = (cluster.end - cluster.begin + kAxisSamples - 1) / kAxisSamples;
     Vector spread{}, axis{};
     for (std::size_t i = cluster.begin; i < cluster.end; i += step) {
         const float* row = rows[order[i]];
-        for (std::size_t k = 0; k < rows.width; ++k) { spread[k] += std::pow(static_cast<double>(row[k]) - cluster.mean[k], 2); }
+        for (std::size_t k = 0; k < rows.width; ++k) {
+            spread[k] += std::pow(static_cast<double>(row[k]) - cluster.mean[k], 2);
+        }
     }
     axis[static_cast<std::size_t>(std::ranges::max_element(spread) - spread.begin())] = 1.0;
     for (int iteration = 0; iteration < 2; ++iteration) {
@@ -76,8 +79,12 @@ std::array<float, kMostNumbers> longestAxis(const Rows& rows, std::span<const st
         for (std::size_t i = cluster.begin; i < cluster.end; i += step) {
             const float* row = rows[order[i]];
             double along = 0.0;
-            for (std::size_t k = 0; k < rows.width; ++k) { along += (static_cast<double>(row[k]) - cluster.mean[k]) * axis[k]; }
-            for (std::size_t k = 0; k < rows.width; ++k) { next[k] += (static_cast<double>(row[k]) - cluster.mean[k]) * along; }
+            for (std::size_t k = 0; k < rows.width; ++k) {
+                along += (static_cast<double>(row[k]) - cluster.mean[k]) * axis[k];
+            }
+            for (std::size_t k = 0; k < rows.width; ++k) {
+                next[k] += (static_cast<double>(row[k]) - cluster.mean[k]) * along;
+            }
         }
         const double length = std::sqrt(std::inner_product(next.begin(), next.end(), next.begin(), 0.0));
         if (!(length > 0.0)) { break; }
@@ -92,7 +99,8 @@ std::array<float, kMostNumbers> longestAxis(const Rows& rows, std::span<const st
 std::size_t split(const Rows& rows, std::span<std::uint32_t> order, const Cluster& cluster) {
     const std::array<float, kMostNumbers> axis = longestAxis(rows, order, cluster);
     std::array<float, kMostNumbers> mean{};
-    std::ranges::transform(cluster.mean, mean.begin(), [](double value) { return static_cast<float>(value); });
+    std::ranges::transform(cluster.mean, mean.begin(),
+                           [](double value) { return static_cast<float>(value); });
     const auto isBefore = [&](std::uint32_t splat) {
         const float* row = rows[splat];
         float along = 0.0f;
@@ -105,13 +113,15 @@ std::size_t split(const Rows& rows, std::span<std::uint32_t> order, const Cluste
 }
 
 // Splits the cluster with the largest error until there are `most`; in the splats' order.
-std::vector<Cluster> grow(const Rows& rows, std::span<std::uint32_t> order, std::size_t most, const Progress& progress) {
+std::vector<Cluster> grow(const Rows& rows, std::span<std::uint32_t> order, std::size_t most,
+                          const Progress& progress) {
     std::priority_queue<Cluster> open;
     std::vector<Cluster> done;
     open.push(measure(rows, order, 0, order.size()));
     while (!open.empty() && open.size() + done.size() < most) {
         if (progress && open.size() % 512 == 0) {
-            progress(kSplittingShare * static_cast<double>(open.size() + done.size()) / static_cast<double>(most));
+            progress(kSplittingShare * static_cast<double>(open.size() + done.size()) /
+                     static_cast<double>(most));
         }
         const Cluster cluster = open.top();
         open.pop();
@@ -130,7 +140,8 @@ std::vector<Cluster> grow(const Rows& rows, std::span<std::uint32_t> order, std:
 
 // Which of at most kNeighbours entries, `first` to `end`, is nearest to a row; `columns` has the entries
 // number by number.
-std::size_t nearest(const float* row, std::size_t width, const std::vector<float>& columns, std::size_t count) {
+std::size_t nearest(const float* row, std::size_t width, const std::vector<float>& columns,
+                    std::size_t count) {
     std::array<float, kNeighbours> distances{};
     for (std::size_t k = 0; k < width; ++k) {
         const float* column = columns.data() + k * kNeighbours;
@@ -140,15 +151,18 @@ std::size_t nearest(const float* row, std::size_t width, const std::vector<float
             distances[i] += difference * difference;
         }
     }
-    return static_cast<std::size_t>(std::min_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count)) -
-                                    distances.begin());
+    return static_cast<std::size_t>(
+        std::min_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(count)) -
+        distances.begin());
 }
 
 // One step of Lloyd's algorithm within each window of adjacent entries; windows begin at `offset`.
-void refine(const Rows& rows, std::span<const std::uint32_t> splats, std::size_t first_entry, std::size_t offset, int threads,
-            ShPalette& palette) {
+void refine(const Rows& rows, std::span<const std::uint32_t> splats, std::size_t first_entry,
+            std::size_t offset, int threads, ShPalette& palette) {
     const std::size_t entries = palette.size() - first_entry;
-    const auto windowOf = [&](std::uint32_t splat) { return (palette.labels[splat] - first_entry + offset) / kNeighbours; };
+    const auto windowOf = [&](std::uint32_t splat) {
+        return (palette.labels[splat] - first_entry + offset) / kNeighbours;
+    };
     const std::size_t windows = (entries + offset + kNeighbours - 1) / kNeighbours;
     std::vector<std::uint32_t> order(splats.size());
     sortByBucket(splats, std::span(order), windows, threads, windowOf);
@@ -161,7 +175,9 @@ void refine(const Rows& rows, std::span<const std::uint32_t> splats, std::size_t
                           end = first_entry + std::min(entries, (window + 1) * kNeighbours - offset);
         std::vector<float> columns(rows.width * kNeighbours, 0.0f);
         for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t k = 0; k < rows.width; ++k) { columns[k * kNeighbours + i - begin] = palette.entries[i * rows.width + k]; }
+            for (std::size_t k = 0; k < rows.width; ++k) {
+                columns[k * kNeighbours + i - begin] = palette.entries[i * rows.width + k];
+            }
         }
         std::vector<Vector> sums(end - begin, Vector{});
         std::vector<std::uint32_t> counts(end - begin, 0);
@@ -175,7 +191,8 @@ void refine(const Rows& rows, std::span<const std::uint32_t> splats, std::size_t
         for (std::size_t i = begin; i < end; ++i) {
             if (counts[i - begin] == 0) { continue; }
             for (std::size_t k = 0; k < rows.width; ++k) {
-                palette.entries[i * rows.width + k] = static_cast<float>(sums[i - begin][k] / counts[i - begin]);
+                palette.entries[i * rows.width + k] =
+                    static_cast<float>(sums[i - begin][k] / counts[i - begin]);
             }
         }
     });
@@ -193,7 +210,9 @@ ShPalette makeShPalette(const Scene& scene, std::size_t most_entries, const Prog
 
     std::vector<std::uint32_t> splats;
     for (std::uint32_t i = 0; i < scene.size(); ++i) {
-        if (std::any_of(rows[i], rows[i] + rows.width, [](float value) { return value != 0.0f; })) { splats.push_back(i); }
+        if (std::any_of(rows[i], rows[i] + rows.width, [](float value) { return value != 0.0f; })) {
+            splats.push_back(i);
+        }
     }
     const std::size_t zeros = splats.size() < scene.size() && most_entries > 1 ? 1 : 0;
     palette.entries.resize(zeros * rows.width, 0.0f);
@@ -203,9 +222,12 @@ ShPalette makeShPalette(const Scene& scene, std::size_t most_entries, const Prog
     }
     for (const Cluster& cluster : grow(rows, splats, most_entries - zeros, progress)) {
         const std::size_t entry = palette.size();
-        for (std::size_t i = cluster.begin; i < cluster.end; ++i) { palette.labels[splats[i]] = static_cast<std::uint16_t>(entry); }
+        for (std::size_t i = cluster.begin; i < cluster.end; ++i) {
+            palette.labels[splats[i]] = static_cast<std::uint16_t>(entry);
+        }
         std::transform(cluster.mean.begin(), cluster.mean.begin() + static_cast<std::ptrdiff_t>(rows.width),
-                       std::back_inserter(palette.entries), [](double value) { return static_cast<float>(value); });
+                       std::back_inserter(palette.entries),
+                       [](double value) { return static_cast<float>(value); });
     }
     for (int i = 0; i < kRefinements; ++i) {
         if (progress) { progress(kSplittingShare + (1.0 - kSplittingShare) * i / kRefinements); }

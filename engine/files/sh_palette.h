@@ -13,7 +13,9 @@ struct ShPalette {
     std::vector<float> entries;         // entries[(entry * coefficients + k) * 3 + channel]
     std::vector<std::uint16_t> labels;  // the entry of each splat
 
-    [[nodiscard]] std::size_t size() const { return coefficients == 0 ? 0 : entries.size() / (3 * coefficients); }
+    [[nodiscard]] std::size_t size() const {
+        return coefficients == 0 ? 0 : entries.size() / (3 * coefficients);
+    }
 };
 
 inline constexpr std::size_t kMostPaletteEntries = 65536;

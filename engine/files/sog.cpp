@@ -13,14 +13,16 @@ namespace binosplat {
 
 namespace {
 
-Scene readSog(const std::string& source, std::unique_ptr<SogFiles> files, LoadNotes& notes, const Progress& progress) {
+Scene readSog(const std::string& source, std::unique_ptr<SogFiles> files, LoadNotes& notes,
+              const Progress& progress) {
     SogSplats splats(std::move(files));
     splats.expect();
     if (progress) { progress(0.0); }
     const SogPictures pictures = splats.decode();
     SceneBuilder builder(source, splats.count(), splats.shDegree(), true);
     const auto second_half = [&](double share) { progress(0.5 + 0.5 * share); };
-    splats.append(pictures, {0, splats.count()}, splats.shDegree(), builder, progress ? Progress(second_half) : Progress());
+    splats.append(pictures, {0, splats.count()}, splats.shDegree(), builder,
+                  progress ? Progress(second_half) : Progress());
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
     scene.antialiased = splats.antialiased();
@@ -51,9 +53,12 @@ Scene readSogFolder(const std::string& folder, LoadNotes& notes, const Progress&
 Scene readSogFile(InputFile& file, LoadNotes& notes, const Progress& progress) {
     requireSogDecoder(file.name());
     if (isArchive(file)) { return readSog(file.name(), openSogBundle(file), notes, progress); }
-    if (file.others() != nullptr) { return readSog(file.name(), openSogFolder(*file.others(), ""), notes, progress); }
+    if (file.others() != nullptr) {
+        return readSog(file.name(), openSogFolder(*file.others(), ""), notes, progress);
+    }
     const std::filesystem::path path(file.name());
-    check(path.filename() == "meta.json", "{}: the meta.json of a SOG scene under another name, expected that name", file.name());
+    check(path.filename() == "meta.json",
+          "{}: the meta.json of a SOG scene under another name, expected that name", file.name());
     return readSogFolder(path.has_parent_path() ? path.parent_path().string() : ".", notes, progress);
 }
 

@@ -37,7 +37,9 @@ public:
         requirePlainName(place("meta.json"), name);
         return InputFile(place(name)).sizeBytes();
     }
-    std::string place(const std::string& name) const override { return (std::filesystem::path(folder_) / name).string(); }
+    std::string place(const std::string& name) const override {
+        return (std::filesystem::path(folder_) / name).string();
+    }
 
 private:
     std::string folder_;
@@ -50,13 +52,17 @@ public:
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
         return files_.open(whole(name), max_bytes)->readWhole(max_bytes);
     }
-    std::uint64_t sizeBytes(const std::string& name) const override { return files_.open(whole(name))->sizeBytes(); }
+    std::uint64_t sizeBytes(const std::string& name) const override {
+        return files_.open(whole(name))->sizeBytes();
+    }
     void expect(const std::vector<std::string>& names, std::uint64_t max_bytes) override {
         std::vector<std::string> all;
         for (const std::string& name : names) { all.push_back(whole(name)); }
         files_.expect(all, max_bytes);
     }
-    std::string place(const std::string& name) const override { return files_.place(name == kMetaName ? meta_ : folder() + name); }
+    std::string place(const std::string& name) const override {
+        return files_.place(name == kMetaName ? meta_ : folder() + name);
+    }
 
 private:
     // meta.json may have another name there.
@@ -94,14 +100,16 @@ public:
         // Pictures are compressed already and meta.json is text: anything that grows a hundredfold is meant
         // to fill the memory.
         const std::uint64_t bound = std::min(max_bytes, 100 * size_bytes_);
-        check(entry.size_bytes <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size_bytes, bound);
+        check(entry.size_bytes <= bound, "{}: is {} bytes long, expected at most {}", place(name),
+              entry.size_bytes, bound);
         ZipReader opened(archive_, entry);
         std::vector<std::byte> bytes(entry.size_bytes);
         const std::size_t got = opened.read(bytes);
         check(got == bytes.size(), "{}: ends after {} of {} bytes", place(name), got, entry.size_bytes);
         // The checksum is compared at the end of the entry.
         std::byte behind{};
-        check(opened.read({&behind, 1}) == 0, "{}: is longer than its {} bytes", place(name), entry.size_bytes);
+        check(opened.read({&behind, 1}) == 0, "{}: is longer than its {} bytes", place(name),
+              entry.size_bytes);
         return bytes;
     }
     std::uint64_t sizeBytes(const std::string& name) const override { return find(name).size_bytes; }
@@ -137,7 +145,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SogFiles> openSogFolder(const std::string& folder) { return std::make_unique<FolderFiles>(folder); }
+std::unique_ptr<SogFiles> openSogFolder(const std::string& folder) {
+    return std::make_unique<FolderFiles>(folder);
+}
 
 std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& meta) {
     return std::make_unique<ElsewhereFiles>(files, meta);
@@ -149,7 +159,8 @@ std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) {
 
 std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle) {
     const std::uint64_t size_bytes = files.open(bundle)->sizeBytes();
-    return std::make_unique<BundleFiles>(files.place(bundle), size_bytes, [&files, bundle] { return files.open(bundle); });
+    return std::make_unique<BundleFiles>(files.place(bundle), size_bytes,
+                                         [&files, bundle] { return files.open(bundle); });
 }
 
 #ifdef BINOSPLAT_SOG
@@ -179,7 +190,8 @@ std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const
     (void)archive.release();  // closed
     zip_stat_t size;
     zip_stat_init(&size);
-    require(zip_source_stat(target.get(), &size) == 0 && (size.valid & ZIP_STAT_SIZE) != 0 && zip_source_open(target.get()) == 0);
+    require(zip_source_stat(target.get(), &size) == 0 && (size.valid & ZIP_STAT_SIZE) != 0 &&
+            zip_source_open(target.get()) == 0);
     std::vector<std::byte> bundle(size.size);
     const zip_int64_t got = zip_source_read(target.get(), bundle.data(), bundle.size());
     zip_source_close(target.get());

@@ -45,7 +45,9 @@ std::array<ByteTable, kChannels> readRanges(const JsonNode& node) {
     mins.requireArray(kChannels);
     maxs.requireArray(kChannels);
     std::array<ByteTable, kChannels> tables;
-    for (std::size_t i = 0; i < kChannels; ++i) { tables[i] = lerpTable(mins.at(i).number(), maxs.at(i).number()); }
+    for (std::size_t i = 0; i < kChannels; ++i) {
+        tables[i] = lerpTable(mins.at(i).number(), maxs.at(i).number());
+    }
     return tables;
 }
 
@@ -55,7 +57,10 @@ void readVersion1(const JsonNode& root, SogMeta& meta) {
     meta.count = shape.at(std::size_t{0}).count();
     meta.scales = readRanges<3>(root.at("scales"));
     meta.sh0 = readRanges<4>(root.at("sh0"));
-    if (meta.palette) { meta.palette->values = lerpTable(root.at("shN").at("mins").number(), root.at("shN").at("maxs").number()); }
+    if (meta.palette) {
+        meta.palette->values =
+            lerpTable(root.at("shN").at("mins").number(), root.at("shN").at("maxs").number());
+    }
 }
 
 void readVersion2(const JsonNode& root, SogMeta& meta) {

@@ -8,7 +8,9 @@ namespace binosplat {
 
 namespace {
 
-double compressPosition(float value) { return std::copysign(std::log1p(std::abs(static_cast<double>(value))), static_cast<double>(value)); }
+double compressPosition(float value) {
+    return std::copysign(std::log1p(std::abs(static_cast<double>(value))), static_cast<double>(value));
+}
 
 }  // namespace
 
@@ -21,10 +23,13 @@ SogPlaces findSogPlaces(const Scene& scene) {
         const auto a = static_cast<std::size_t>(axis);
         places.mins[a] = static_cast<float>(compressPosition(least[axis]));
         places.maxs[a] = static_cast<float>(compressPosition(largest[axis]));
-        const auto low = static_cast<double>(places.mins[a]), range = static_cast<double>(places.maxs[a]) - low;
+        const auto low = static_cast<double>(places.mins[a]),
+                   range = static_cast<double>(places.maxs[a]) - low;
         for (std::size_t i = 0; i < scene.size(); ++i) {
-            const double share = range > 0.0 ? (compressPosition(scene.positions[i][axis]) - low) / range : 0.0;
-            places.levels[i][a] = static_cast<std::uint16_t>(std::lround(65535.0 * std::clamp(share, 0.0, 1.0)));
+            const double share =
+                range > 0.0 ? (compressPosition(scene.positions[i][axis]) - low) / range : 0.0;
+            places.levels[i][a] =
+                static_cast<std::uint16_t>(std::lround(65535.0 * std::clamp(share, 0.0, 1.0)));
         }
     }
     return places;
@@ -40,7 +45,8 @@ std::vector<std::uint32_t> mortonOrder(const SogPlaces& places) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
     keys.reserve(places.levels.size());
     for (const auto& [x, y, z] : places.levels) {
-        keys.emplace_back(spread(x) | spread(y) << 1 | spread(z) << 2, static_cast<std::uint32_t>(keys.size()));
+        keys.emplace_back(spread(x) | spread(y) << 1 | spread(z) << 2,
+                          static_cast<std::uint32_t>(keys.size()));
     }
     std::ranges::sort(keys);
     std::vector<std::uint32_t> order;
@@ -51,13 +57,14 @@ std::vector<std::uint32_t> mortonOrder(const SogPlaces& places) {
 
 std::array<std::uint8_t, 4> packSogRotation(const glm::quat& rotation) {
     const std::array<float, 4> wxyz{rotation.w, rotation.x, rotation.y, rotation.z};
-    const auto largest =
-        static_cast<std::size_t>(std::ranges::max_element(wxyz, {}, [](float part) { return std::abs(part); }) - wxyz.begin());
+    const auto largest = static_cast<std::size_t>(
+        std::ranges::max_element(wxyz, {}, [](float part) { return std::abs(part); }) - wxyz.begin());
     std::array<std::uint8_t, 4> packed{};
     for (std::size_t i = 0, next = 0; i < 4; ++i) {
         if (i == largest) { continue; }
         const float part = std::copysign(1.0f, wxyz[largest]) * wxyz[i] * 1.41421356f;
-        packed[next++] = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(0.5f + 0.5f * part, 0.0f, 1.0f)));
+        packed[next++] =
+            static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(0.5f + 0.5f * part, 0.0f, 1.0f)));
     }
     packed[3] = static_cast<std::uint8_t>(252 + largest);
     return packed;

@@ -39,7 +39,8 @@ public:
     // Several pictures at a time, on that many threads.
     [[nodiscard]] SogPictures decode(int threads = 1);
     // The splats in `range`, which lies below count(). `sh_degree` is the builder's, at least shDegree().
-    void append(const SogPictures& pictures, SplatRange range, int sh_degree, SceneBuilder& builder, const Progress& progress) const;
+    void append(const SogPictures& pictures, SplatRange range, int sh_degree, SceneBuilder& builder,
+                const Progress& progress) const;
 
 private:
     [[nodiscard]] std::vector<std::string> pictures() const;

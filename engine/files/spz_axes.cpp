@@ -17,7 +17,8 @@ constexpr std::uint32_t kRight = 1, kUp = 2, kFront = 4, kVerticalZ = 8;
 constexpr std::uint32_t kCoordinateSystem = 0xadbe0003u;
 
 glm::vec3 signsOf(std::uint32_t bits) {
-    return {(bits & kRight) != 0 ? 1.0f : -1.0f, (bits & kUp) != 0 ? -1.0f : 1.0f, (bits & kFront) != 0 ? 1.0f : -1.0f};
+    return {(bits & kRight) != 0 ? 1.0f : -1.0f, (bits & kUp) != 0 ? -1.0f : 1.0f,
+            (bits & kFront) != 0 ? 1.0f : -1.0f};
 }
 
 // Right, down, forward from the file's axes.
@@ -31,7 +32,10 @@ glm::dmat3 matrixOf(std::uint32_t bits) {
 }  // namespace
 
 SpzAxes::SpzAxes(std::uint32_t system)
-    : system_(system), signs_(signsOf(system - 1)), z_is_up_(((system - 1) & kVerticalZ) != 0), sh_turn_(matrixOf(system - 1)) {
+    : system_(system),
+      signs_(signsOf(system - 1)),
+      z_is_up_(((system - 1) & kVerticalZ) != 0),
+      sh_turn_(matrixOf(system - 1)) {
     for (std::size_t k = 0; k < sh_signs_.size() && !z_is_up_; ++k) {
         std::array<float, 15> unit{};
         unit[k] = 1.0f;
@@ -42,10 +46,11 @@ SpzAxes::SpzAxes(std::uint32_t system)
 
 std::string SpzAxes::describe() const {
     const std::uint32_t bits = system_ - 1;
-    const char *vertical = (bits & kUp) != 0 ? "up" : "down", *level = (bits & kFront) != 0 ? "front" : "back";
+    const char *vertical = (bits & kUp) != 0 ? "up" : "down",
+               *level = (bits & kFront) != 0 ? "front" : "back";
     if (z_is_up_) { std::swap(vertical, level); }
-    return fmt::format("x {}, y {}, z {}; {}-handed", (bits & kRight) != 0 ? "right" : "left", vertical, level,
-                       glm::determinant(matrixOf(bits)) > 0.0 ? "right" : "left");
+    return fmt::format("x {}, y {}, z {}; {}-handed", (bits & kRight) != 0 ? "right" : "left", vertical,
+                       level, glm::determinant(matrixOf(bits)) > 0.0 ? "right" : "left");
 }
 
 glm::vec3 SpzAxes::turn(const glm::vec3& position) const {
@@ -62,7 +67,8 @@ glm::quat SpzAxes::turn(const glm::quat& rotation) const {
         signs.z = -signs.z;
     }
     // Signs s turn R into diag(s) R diag(s), which is the same ellipsoid: axes have no sign.
-    return {turned.w, signs.y * signs.z * turned.x, signs.x * signs.z * turned.y, signs.x * signs.y * turned.z};
+    return {turned.w, signs.y * signs.z * turned.x, signs.x * signs.z * turned.y,
+            signs.x * signs.y * turned.z};
 }
 
 void SpzAxes::turnSh(float* rest, int sh_degree) const {
@@ -74,7 +80,8 @@ void SpzAxes::turnSh(float* rest, int sh_degree) const {
 
 std::optional<std::uint32_t> findSpzAxes(std::span<const std::byte> records) {
     while (records.size() >= 8) {
-        const auto type = loadLittle<std::uint32_t>(records, 0), bytes = loadLittle<std::uint32_t>(records, 4);
+        const auto type = loadLittle<std::uint32_t>(records, 0),
+                   bytes = loadLittle<std::uint32_t>(records, 4);
         records = records.subspan(8);
         if (bytes > records.size()) { break; }
         if (type == kCoordinateSystem && bytes >= 4) { return loadLittle<std::uint32_t>(records, 0); }

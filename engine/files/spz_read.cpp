@@ -41,7 +41,8 @@ struct Header {
 };
 
 Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bool gzipped) {
-    check(bytes.size() == spz::kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file, bytes.size(), spz::kHeaderBytes);
+    check(bytes.size() == spz::kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file,
+          bytes.size(), spz::kHeaderBytes);
     Header header;
     header.version = loadLittle<std::uint32_t>(bytes, 4);
     const bool known = header.version >= 2 && header.version <= (gzipped ? 3u : 4u);
@@ -56,7 +57,8 @@ Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bo
     header.fractional_bits = std::to_integer<int>(bytes[13]);
     header.antialiased = (std::to_integer<int>(bytes[14]) & spz::kAntialiased) != 0;
     header.has_extensions = (std::to_integer<int>(bytes[14]) & spz::kHasExtensions) != 0;
-    check(header.fractional_bits <= 23, "{}: header: {} fractional bits of 24, expected 0 to 23", file, header.fractional_bits);
+    check(header.fractional_bits <= 23, "{}: header: {} fractional bits of 24, expected 0 to 23", file,
+          header.fractional_bits);
     return header;
 }
 
@@ -70,8 +72,8 @@ struct Attributes {
 Attributes reserveAttributes(const InputFile& file, const Header& header) {
     const std::uint64_t total = header.splats * header.bytesPerSplat();
     check(total <= kMaxExpansion * file.sizeBytes() + 65536,
-          "{}: header: {} splats of {} bytes in a file of {}, expected fewer than {} per byte", file.name(), header.splats,
-          header.bytesPerSplat(), file.sizeBytes(), kMaxExpansion);
+          "{}: header: {} splats of {} bytes in a file of {}, expected fewer than {} per byte", file.name(),
+          header.splats, header.bytesPerSplat(), file.sizeBytes(), kMaxExpansion);
     Attributes attributes{};
     attributes.bytes.resize(total);
     attributes.positions = attributes.bytes.data();
@@ -95,16 +97,19 @@ Attributes readStream(InputFile& file, const ReadSome& read, const Header& heade
         if (progress) { progress(kUnpackingShare * static_cast<double>(got) / static_cast<double>(total)); }
         more = read(std::span(attributes.bytes).subspan(got, std::min(total - got, kPieceBytes)));
     }
-    check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total, header.splats);
+    check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total,
+          header.splats);
     // The checksum is compared at the end of a gzip stream; records of extensions may come before that.
     std::array<std::byte, 4096> behind;
     std::uint64_t extra = 0;
     for (std::size_t more = 0; (more = read(behind)) > 0;) {
         if (attributes.records.size() < kMostRecords) {
-            attributes.records.insert(attributes.records.end(), behind.begin(), behind.begin() + static_cast<std::ptrdiff_t>(more));
+            attributes.records.insert(attributes.records.end(), behind.begin(),
+                                      behind.begin() + static_cast<std::ptrdiff_t>(more));
         }
         extra += more;
-        check(extra <= kMaxExpansion * file.sizeBytes() + 65536, "{}: data: {} bytes and more behind the last splat", file.name(), extra);
+        check(extra <= kMaxExpansion * file.sizeBytes() + 65536,
+              "{}: data: {} bytes and more behind the last splat", file.name(), extra);
     }
     return attributes;
 }
@@ -112,34 +117,46 @@ Attributes readStream(InputFile& file, const ReadSome& read, const Header& heade
 // Version 4: after the header come the number of streams, the place of their table (two 64-bit sizes each:
 // packed, plain), and a stream per attribute, each compressed by itself. Records of extensions are between
 // header and table.
-Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at, const Progress& progress) {
+Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at,
+                         const Progress& progress) {
     const std::array<std::uint64_t, 6> per_splat{9, 1, 3, 3, header.rotation_bytes, header.sh_bytes};
     const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // empty streams may be left out
-    check(streams >= least && streams <= 6, "{}: header: {} streams, expected {}", file.name(), streams, least);
+    check(streams >= least && streams <= 6, "{}: header: {} streams, expected {}", file.name(), streams,
+          least);
     check(table_at >= file.positionBytes() && table_at <= file.sizeBytes(),
-          "{}: header: the table of streams is at byte {}, expected it from {} to {}", file.name(), table_at, file.positionBytes(),
-          file.sizeBytes());
-    const std::span<const std::byte> start = file.readBlock(std::min<std::uint64_t>(table_at - file.positionBytes(), kMostRecords));
+          "{}: header: the table of streams is at byte {}, expected it from {} to {}", file.name(), table_at,
+          file.positionBytes(), file.sizeBytes());
+    const std::span<const std::byte> start =
+        file.readBlock(std::min<std::uint64_t>(table_at - file.positionBytes(), kMostRecords));
     std::vector<std::byte> records(start.begin(), start.end());
     file.skip(table_at - file.positionBytes());
     const std::span<const std::byte> table_bytes = file.readBlock(16 * streams);
-    check(table_bytes.size() == 16 * streams, "{}: ends within the table of streams, at byte {}", file.name(), file.positionBytes());
+    check(table_bytes.size() == 16 * streams, "{}: ends within the table of streams, at byte {}", file.name(),
+          file.positionBytes());
     const std::vector<std::byte> table(table_bytes.begin(), table_bytes.end());
 
     Attributes attributes = reserveAttributes(file, header);
     attributes.records = std::move(records);
     std::byte* target = attributes.bytes.data();
     for (std::size_t i = 0; i < streams; ++i) {
-        const auto packed = loadLittle<std::uint64_t>(table, 16 * i), plain = loadLittle<std::uint64_t>(table, 16 * i + 8);
+        const auto packed = loadLittle<std::uint64_t>(table, 16 * i),
+                   plain = loadLittle<std::uint64_t>(table, 16 * i + 8);
         const std::uint64_t expected = per_splat[i] * header.splats;
-        check(plain == expected, "{}: stream {}: {} bytes, expected {} for {} splats", file.name(), i, plain, expected, header.splats);
-        check(packed <= file.bytesLeft(), "{}: stream {}: {} bytes are left of {}", file.name(), i, file.bytesLeft(), packed);
+        check(plain == expected, "{}: stream {}: {} bytes, expected {} for {} splats", file.name(), i, plain,
+              expected, header.splats);
+        check(packed <= file.bytesLeft(), "{}: stream {}: {} bytes are left of {}", file.name(), i,
+              file.bytesLeft(), packed);
         std::vector<std::byte> bytes(packed);
         const auto before = static_cast<double>(target - attributes.bytes.data());
         for (std::size_t done = 0, more = 0; done < packed; done += more) {
-            const double read = static_cast<double>(plain) * static_cast<double>(done) / static_cast<double>(packed);
-            if (progress) { progress(kUnpackingShare * (before + read) / std::max(static_cast<double>(attributes.bytes.size()), 1.0)); }
-            more = file.read(std::span(bytes).subspan(done, std::min<std::size_t>(packed - done, kPieceBytes)));
+            const double read =
+                static_cast<double>(plain) * static_cast<double>(done) / static_cast<double>(packed);
+            if (progress) {
+                progress(kUnpackingShare * (before + read) /
+                         std::max(static_cast<double>(attributes.bytes.size()), 1.0));
+            }
+            more =
+                file.read(std::span(bytes).subspan(done, std::min<std::size_t>(packed - done, kPieceBytes)));
             check(more > 0, "{}: stream {}: ends after {} of {} bytes", file.name(), i, done, packed);
         }
         const std::size_t got = ZSTD_decompress(target, plain, bytes.data(), bytes.size());
@@ -174,19 +191,21 @@ std::array<float, 4> loadRotation3(const std::byte* at) {
         const float size = static_cast<float>(word >> shift & 511u) / 511.0f * 0.70710678f;
         return (word >> (shift + 9) & 1u) != 0 ? -size : size;
     };
-    const std::array<float, 4> xyzw = fromSmallestThree(word >> 30, {component(20), component(10), component(0)});
+    const std::array<float, 4> xyzw =
+        fromSmallestThree(word >> 30, {component(20), component(10), component(0)});
     return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
 }
 
-void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& attributes, std::size_t splat, StoredBlock& block,
-                 std::size_t row) {
+void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& attributes, std::size_t splat,
+                 StoredBlock& block, std::size_t row) {
     const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
     glm::vec3 position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int offset = static_cast<int>(axis);
         position[offset] = loadFixed(attributes.positions + 9 * splat + 3 * axis, header.fractional_bits);
         put(kStoredScale0 + offset, loadByte(attributes.scales + 3 * splat + axis) / 16.0f - 10.0f);
-        put(kStoredDc0 + offset, (loadByte(attributes.colours + 3 * splat + axis) / 255.0f - 0.5f) / spz::kColourScale);
+        put(kStoredDc0 + offset,
+            (loadByte(attributes.colours + 3 * splat + axis) / 255.0f - 0.5f) / spz::kColourScale);
     }
     position = axes.turn(position);
     for (int axis = 0; axis < 3; ++axis) { put(kStoredX + axis, position[axis] + 0.0f); }  // no -0
@@ -207,10 +226,13 @@ void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& at
 }
 
 // The file's axes, or the format's own if the file names none.
-SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, LoadNotes& notes, bool& known) {
-    const std::optional<std::uint32_t> said = header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
+SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes,
+                   LoadNotes& notes, bool& known) {
+    const std::optional<std::uint32_t> said =
+        header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
     if (said && *said > SpzAxes::kLast) {
-        notes.lines.push_back(fmt::format("{}: names axes {}, which are not known; taken as {}", file, *said, SpzAxes().describe()));
+        notes.lines.push_back(fmt::format("{}: names axes {}, which are not known; taken as {}", file, *said,
+                                          SpzAxes().describe()));
     }
     known = said && *said > 0 && *said <= SpzAxes::kLast;
     const SpzAxes axes(known ? *said : SpzAxes::kUsual);
@@ -233,14 +255,17 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     Attributes attributes{};
     std::optional<GzipReader> stream;
     if (file.peek(4) != "NGSP") { stream.emplace(file); }
-    const ReadSome read = [&](std::span<std::byte> target) { return stream ? stream->read(target) : file.read(target); };
+    const ReadSome read = [&](std::span<std::byte> target) {
+        return stream ? stream->read(target) : file.read(target);
+    };
     std::array<std::byte, spz::kHeaderBytes> bytes{}, more{};
     header = parseHeader(file.name(), std::span(bytes).first(read(bytes)), stream.has_value());
     if (header.version == 4) {
         const std::size_t size = read(more);
-        check(size == more.size(), "{}: header: ends after {} bytes, expected {}", file.name(), bytes.size() + size,
-              bytes.size() + more.size());
-        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]), loadLittle<std::uint32_t>(more, 0), progress);
+        check(size == more.size(), "{}: header: ends after {} bytes, expected {}", file.name(),
+              bytes.size() + size, bytes.size() + more.size());
+        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]),
+                                   loadLittle<std::uint32_t>(more, 0), progress);
     } else {
         attributes = readStream(file, read, header, progress);
     }
@@ -252,10 +277,14 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     StoredBlock block;
     for (std::uint64_t done = 0, blocks = 0; done < header.splats; done += block.rows, ++blocks) {
         if (progress && blocks % 128 == 0) {
-            progress(kUnpackingShare + (1.0 - kUnpackingShare) * static_cast<double>(done) / static_cast<double>(header.splats));
+            progress(kUnpackingShare + (1.0 - kUnpackingShare) * static_cast<double>(done) /
+                                           static_cast<double>(header.splats));
         }
-        block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, header.splats - done));
-        for (std::size_t row = 0; row < block.rows; ++row) { unpackSplat(header, axes, attributes, done + row, block, row); }
+        block.rows =
+            static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, header.splats - done));
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            unpackSplat(header, axes, attributes, done + row, block, row);
+        }
         builder.append(block);
     }
     if (progress) { progress(1.0); }
@@ -264,7 +293,9 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     notes.lines.insert(notes.lines.end(), of_axes.lines.begin(), of_axes.lines.end());
     scene.antialiased = header.antialiased;
     if (axes_known) { scene.vertical_axis = 1; }
-    if (header.sh_bytes > 45) { notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name())); }
+    if (header.sh_bytes > 45) {
+        notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name()));
+    }
     return scene;
 }
 

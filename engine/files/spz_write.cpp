@@ -15,7 +15,9 @@ namespace {
 constexpr int kMaxFractionalBits = 16;
 constexpr float kMaxFixed = 8388607.0f;  // 2^23 - 1
 
-std::byte nearestByte(float value) { return static_cast<std::byte>(std::lround(std::clamp(value, 0.0f, 255.0f))); }
+std::byte nearestByte(float value) {
+    return static_cast<std::byte>(std::lround(std::clamp(value, 0.0f, 255.0f)));
+}
 
 float furthestCoordinate(const Scene& scene) {
     float furthest = 0.0f;
@@ -38,7 +40,9 @@ std::byte* putPosition(const glm::vec3& position, int fractional_bits, std::byte
 }
 
 std::byte* putColour(const float* f_dc, std::byte* at) {
-    for (int channel = 0; channel < 3; ++channel) { *at++ = nearestByte(255.0f * (0.5f + spz::kColourScale * f_dc[channel])); }
+    for (int channel = 0; channel < 3; ++channel) {
+        *at++ = nearestByte(255.0f * (0.5f + spz::kColourScale * f_dc[channel]));
+    }
     return at;
 }
 
@@ -62,7 +66,8 @@ std::byte* putRotation(const glm::quat& rotation, std::byte* at) {
     std::uint32_t word = largest;
     for (std::uint32_t i = 0; i < 4; ++i) {
         if (i == largest) { continue; }
-        const auto size = static_cast<std::uint32_t>(std::min(511l, std::lround(std::abs(xyzw[i]) * 1.41421356f * 511.0f)));
+        const auto size =
+            static_cast<std::uint32_t>(std::min(511l, std::lround(std::abs(xyzw[i]) * 1.41421356f * 511.0f)));
         word = word << 10 | static_cast<std::uint32_t>(std::signbit(xyzw[i]) != negate) << 9 | size;
     }
     return putWord(at, word, 4);
@@ -88,10 +93,14 @@ int spzFractionalBits(const Scene& scene) {
 }
 
 void writeSpz(const Scene& scene, const std::string& path, const Progress& progress) {
-    check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
-    check(scene.size() <= 0xffffffffu, "{}: cannot hold {} splats, SPZ counts in 32 bits", path, scene.size());
+    check(!scene.is_linear,
+          "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path,
+          scene.name);
+    check(scene.size() <= 0xffffffffu, "{}: cannot hold {} splats, SPZ counts in 32 bits", path,
+          scene.size());
     const float furthest = furthestCoordinate(scene);
-    check(furthest <= kMaxFixed, "{}: cannot hold positions up to {} units, SPZ ends at {}", path, furthest, kMaxFixed);
+    check(furthest <= kMaxFixed, "{}: cannot hold positions up to {} units, SPZ ends at {}", path, furthest,
+          kMaxFixed);
     const int fractional_bits = spzFractionalBits(scene);
     PartFile file(path);
     GzipWriter stream(file);
@@ -105,11 +114,17 @@ void writeSpz(const Scene& scene, const std::string& path, const Progress& progr
     stream.write(header);
 
     const int coefficients = shCoefficientCount(scene.sh_degree);
-    const auto shOf = [&](std::size_t splat) { return scene.sh.data() + splat * 3 * static_cast<std::size_t>(coefficients); };
+    const auto shOf = [&](std::size_t splat) {
+        return scene.sh.data() + splat * 3 * static_cast<std::size_t>(coefficients);
+    };
     using Put = std::function<std::byte*(std::size_t splat, std::byte * at)>;
     const std::array<Put, 6> attributes{
-        [&](std::size_t splat, std::byte* to) { return putPosition(scene.positions[splat], fractional_bits, to); },
-        [&](std::size_t splat, std::byte* to) { return *to = nearestByte(255.0f * scene.opacities[splat]), to + 1; },
+        [&](std::size_t splat, std::byte* to) {
+            return putPosition(scene.positions[splat], fractional_bits, to);
+        },
+        [&](std::size_t splat, std::byte* to) {
+            return *to = nearestByte(255.0f * scene.opacities[splat]), to + 1;
+        },
         [&](std::size_t splat, std::byte* to) { return putColour(shOf(splat), to); },
         [&](std::size_t splat, std::byte* to) { return putScale(scene, splat, to); },
         [&](std::size_t splat, std::byte* to) { return putRotation(scene.rotations[splat], to); },

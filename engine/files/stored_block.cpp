@@ -23,11 +23,15 @@ std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, bo
     for (int attribute = 0; attribute < kStoredRest0; ++attribute) {
         if (attribute == kStoredScale2 && !three_scales) { continue; }
         const bool is_scale = attribute >= kStoredScale0 && attribute <= kStoredScale2;
-        const float least = three_scales && is_scale ? -kFarLogarithm : -std::numeric_limits<float>::infinity(),
-                    most = attribute == kStoredOpacity ? kFarLogarithm : std::numeric_limits<float>::infinity();
+        const float least =
+                        three_scales && is_scale ? -kFarLogarithm : -std::numeric_limits<float>::infinity(),
+                    most =
+                        attribute == kStoredOpacity ? kFarLogarithm : std::numeric_limits<float>::infinity();
         const float* column = block.column(attribute);
         // The value comes first, so that a NaN stays one.
-        for (std::size_t row = 0; row < block.rows; ++row) { zeros[row] += std::min(std::max(column[row], least), most) * 0.0f; }
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            zeros[row] += std::min(std::max(column[row], least), most) * 0.0f;
+        }
     }
     std::array<bool, StoredBlock::kRows> finite{};
     for (std::size_t row = 0; row < block.rows; ++row) {
@@ -91,7 +95,10 @@ int findUsedDegree(const StoredBlock& block, const ActiveBlock& active, int sh_d
     int used = 0;
     for (int channel = 0; channel < 3; ++channel) {
         for (int k = 1; k <= per_channel; ++k) {
-            while (seen[static_cast<std::size_t>(channel * per_channel + k - 1)] > 0.0f && shCoefficientCount(used) <= k) { ++used; }
+            while (seen[static_cast<std::size_t>(channel * per_channel + k - 1)] > 0.0f &&
+                   shCoefficientCount(used) <= k) {
+                ++used;
+            }
         }
     }
     return used;
@@ -119,11 +126,13 @@ void activate(const StoredBlock& block, int sh_degree, bool three_scales, Active
         if (finite[row]) { scale = {std::exp(value(kStoredScale0)), std::exp(value(kStoredScale1))}; }
         glm::dquat rotation = glm::identity<glm::dquat>();
         const bool turned =
-            finite[row] && normaliseRotation(value(kStoredRot0), value(kStoredRot1), value(kStoredRot2), value(kStoredRot3), rotation);
+            finite[row] && normaliseRotation(value(kStoredRot0), value(kStoredRot1), value(kStoredRot2),
+                                             value(kStoredRot3), rotation);
         float thickness = 0.0f;
         bool usable = finite[row];
         if (turned && three_scales) {
-            const Turned axes = turnShortestLast(rotation, {value(kStoredScale0), value(kStoredScale1), value(kStoredScale2)});
+            const Turned axes = turnShortestLast(
+                rotation, {value(kStoredScale0), value(kStoredScale1), value(kStoredScale2)});
             rotation = axes.rotation;
             scale = {std::exp(axes.log_scale_u), std::exp(axes.log_scale_v)};
             thickness = std::exp(axes.log_scale_w);

@@ -41,8 +41,12 @@ public:
     static constexpr std::size_t kRestStride = 48;  // at most 45, and zeros
     StoredBlock() : columns_(kRows * kStoredRest0), rest_(kRows * kRestStride) {}
     // For an attribute before kStoredRest0.
-    [[nodiscard]] float* column(int attribute) { return columns_.data() + static_cast<std::size_t>(attribute) * kRows; }
-    [[nodiscard]] const float* column(int attribute) const { return columns_.data() + static_cast<std::size_t>(attribute) * kRows; }
+    [[nodiscard]] float* column(int attribute) {
+        return columns_.data() + static_cast<std::size_t>(attribute) * kRows;
+    }
+    [[nodiscard]] const float* column(int attribute) const {
+        return columns_.data() + static_cast<std::size_t>(attribute) * kRows;
+    }
     // The f_rest values of a row; those that the file lacks stay 0.
     [[nodiscard]] float* rest(std::size_t row) { return rest_.data() + row * kRestStride; }
     [[nodiscard]] const float* rest(std::size_t row) const { return rest_.data() + row * kRestStride; }

@@ -33,11 +33,13 @@ StreamedChunks::StreamedChunks(const fs::path& folder, const std::string& name) 
     meta_ = parseLodMeta(files->read(name, kMaxLodMetaBytes), place_);
 }
 
-StreamedChunks::StreamedChunks(const std::string& folder) : StreamedChunks(fs::path(folder), "lod-meta.json") {}
+StreamedChunks::StreamedChunks(const std::string& folder)
+    : StreamedChunks(fs::path(folder), "lod-meta.json") {}
 
 StreamedChunks::StreamedChunks(InputFile& file)
-    : StreamedChunks(file.others() != nullptr ? StreamedChunks()
-                                              : StreamedChunks(folderOf(file.name()), fs::path(file.name()).filename().string())) {
+    : StreamedChunks(file.others() != nullptr
+                         ? StreamedChunks()
+                         : StreamedChunks(folderOf(file.name()), fs::path(file.name()).filename().string())) {
     if (file.others() == nullptr) { return; }
     place_ = file.name();
     meta_ = parseLodMeta(file.readWhole(kMaxLodMetaBytes), file.name());
@@ -57,18 +59,26 @@ void StreamedChunks::expect(std::span<const std::size_t> files) const {
 
 SogSplats StreamedChunks::open(std::size_t index) {
     const std::string& name = path(index);
-    if (elsewhere_ != nullptr) { return SogSplats(isBundle(name) ? openSogBundle(*elsewhere_, name) : openSogFolder(*elsewhere_, name)); }
-    const std::string place = place_ + (index == environmentIndex() ? ": environment" : fmt::format(": filenames[{}]", index));
+    if (elsewhere_ != nullptr) {
+        return SogSplats(isBundle(name) ? openSogBundle(*elsewhere_, name)
+                                        : openSogFolder(*elsewhere_, name));
+    }
+    const std::string place =
+        place_ + (index == environmentIndex() ? ": environment" : fmt::format(": filenames[{}]", index));
     const fs::path file = folder_ / name;
     std::error_code error;
-    check(fs::is_regular_file(file, error), "{}: {} is not there, expected a chunk of the scene", place, file.string());
+    check(fs::is_regular_file(file, error), "{}: {} is not there, expected a chunk of the scene", place,
+          file.string());
     const fs::path folder = fs::canonical(folder_, error), real = fs::canonical(file, error);
     check(!error, "{}: {} cannot be read: {}", place, file.string(), error.message());
     check(std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end(),
-          "{}: {} is a link to {}, expected a place within {}", place, file.string(), real.string(), folder.string());
+          "{}: {} is a link to {}, expected a place within {}", place, file.string(), real.string(),
+          folder.string());
     check(opened_.emplace(real, index).first->second == index,
-          "{}: {} is a link to a chunk that is named already, expected each chunk once", place, file.string());
-    SogSplats splats(isBundle(file) ? openSogBundle(InputFile(file.string())) : openSogFolder(file.parent_path().string()));
+          "{}: {} is a link to a chunk that is named already, expected each chunk once", place,
+          file.string());
+    SogSplats splats(isBundle(file) ? openSogBundle(InputFile(file.string()))
+                                    : openSogFolder(file.parent_path().string()));
     splats.requirePlausibleCount();
     return splats;
 }
@@ -90,7 +100,8 @@ std::optional<SogSplats> StreamedChunks::openEnvironment() {
 }
 
 void StreamedChunks::requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const {
-    check(range.first + range.count <= splats.count(), "{}: tree: a leaf names splat {} of filenames[{}] ({}), which has {}", place_,
+    check(range.first + range.count <= splats.count(),
+          "{}: tree: a leaf names splat {} of filenames[{}] ({}), which has {}", place_,
           range.first + range.count - 1, file, path(file), splats.count());
 }
 

@@ -60,41 +60,47 @@ ReadLevel openLevel(StreamedChunks& scene, std::size_t index) {
 ReadLevel chooseLevel(StreamedChunks& scene, const LevelChoice& choice) {
     const std::size_t levels = scene.meta().levels.size();
     if (choice.level) {
-        check(*choice.level < levels, "{}: lod is {}, expected one of the scene's levels of detail, 0 (the finest) to {}", scene.place(),
-              *choice.level, levels - 1);
+        check(*choice.level < levels,
+              "{}: lod is {}, expected one of the scene's levels of detail, 0 (the finest) to {}",
+              scene.place(), *choice.level, levels - 1);
         return openLevel(scene, *choice.level);
     }
     for (std::size_t index = 0;; ++index) {
         // It does not fit even without harmonics, so none of it need be fetched.
-        const bool is_hopeless =
-            scene.areElsewhere() && index + 1 < levels && choice.fits && !choice.fits(scene.meta().levels[index].splats, 0);
+        const bool is_hopeless = scene.areElsewhere() && index + 1 < levels && choice.fits &&
+                                 !choice.fits(scene.meta().levels[index].splats, 0);
         if (is_hopeless) { continue; }
         ReadLevel level = openLevel(scene, index);
         const bool fits = !choice.fits || choice.fits(level.splats, level.sh_degree);
-        level.reason = !fits ? ", as none fits the memory limit" : index > 0 ? ", the finest that fits the memory limit" : "";
+        level.reason = !fits       ? ", as none fits the memory limit"
+                       : index > 0 ? ", the finest that fits the memory limit"
+                                   : "";
         if (fits || index + 1 == levels) { return level; }
     }
 }
 
-void noteLevel(const std::string& source, const StreamedChunks& scene, const ReadLevel& level, LoadNotes& notes) {
+void noteLevel(const std::string& source, const StreamedChunks& scene, const ReadLevel& level,
+               LoadNotes& notes) {
     const LodMeta& meta = scene.meta();
     for (const LodLevel& each : meta.levels) { notes.level_splats.push_back(each.splats); }
     notes.level = static_cast<std::uint32_t>(level.index);
     notes.environment_splats = level.splats - meta.levels[level.index].splats;
-    notes.lines.push_back(
-        fmt::format("{}: level of detail {} of 0 (the finest) to {}{}", source, level.index, meta.levels.size() - 1, level.reason));
+    notes.lines.push_back(fmt::format("{}: level of detail {} of 0 (the finest) to {}{}", source, level.index,
+                                      meta.levels.size() - 1, level.reason));
     if (const std::uint64_t without = meta.leaves_without[level.index]; without > 0) {
-        notes.lines.back() += fmt::format("; {} of {} leaves have no splats at this level", without, meta.leaves);
+        notes.lines.back() +=
+            fmt::format("; {} of {} leaves have no splats at this level", without, meta.leaves);
         const std::uint64_t coarser = meta.leaves_coarser[level.index];
         if (coarser > 0) { notes.lines.back() += fmt::format(", {} of them show a coarser one", coarser); }
     }
     if (!scene.missingEnvironment().empty()) {
-        notes.lines.push_back(fmt::format("{}: is shown without its environment: {}", source, scene.missingEnvironment()));
+        notes.lines.push_back(
+            fmt::format("{}: is shown without its environment: {}", source, scene.missingEnvironment()));
     }
 }
 
-Scene readStreamedSog(const std::string& source, StreamedChunks scene, const LevelChoice& choice, LoadNotes& notes,
-                      const Progress& progress) {
+Scene readStreamedSog(const std::string& source, StreamedChunks scene, const LevelChoice& choice,
+                      LoadNotes& notes, const Progress& progress) {
     if (progress) { progress(0.0); }
     ReadLevel level = chooseLevel(scene, choice);
     if (scene.areElsewhere()) {
@@ -108,16 +114,20 @@ Scene readStreamedSog(const std::string& source, StreamedChunks scene, const Lev
         const SogPictures pictures = chunk.splats.decode();
         for (const SplatRange range : chunk.ranges) {
             const auto show = [&](double share) {
-                progress((static_cast<double>(done) + share * static_cast<double>(range.count)) / static_cast<double>(level.splats));
+                progress((static_cast<double>(done) + share * static_cast<double>(range.count)) /
+                         static_cast<double>(level.splats));
             };
-            chunk.splats.append(pictures, range, level.sh_degree, builder, progress ? Progress(show) : Progress());
+            chunk.splats.append(pictures, range, level.sh_degree, builder,
+                                progress ? Progress(show) : Progress());
             done += range.count;
         }
     }
     if (progress) { progress(1.0); }
     Scene whole = builder.finish(notes);
-    whole.antialiased = std::ranges::any_of(level.chunks, [](const Chunk& chunk) { return chunk.splats.antialiased(); });
-    if (!level.chunks.empty() && std::ranges::all_of(level.chunks, [](const Chunk& chunk) { return chunk.splats.discs(); })) {
+    whole.antialiased =
+        std::ranges::any_of(level.chunks, [](const Chunk& chunk) { return chunk.splats.antialiased(); });
+    if (!level.chunks.empty() &&
+        std::ranges::all_of(level.chunks, [](const Chunk& chunk) { return chunk.splats.discs(); })) {
         takeAsDiscs(whole, notes);
     }
     noteLevel(source, scene, level, notes);
@@ -137,12 +147,14 @@ bool isStreamedSogFile(InputFile& file) {
     return startsObject(start) && start.find("\"lodLevels\"") != std::string_view::npos;
 }
 
-Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes, const Progress& progress) {
+Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes,
+                            const Progress& progress) {
     requireSogDecoder(folder);
     return readStreamedSog(folder, StreamedChunks(folder), choice, notes, progress);
 }
 
-Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes, const Progress& progress) {
+Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes,
+                          const Progress& progress) {
     requireSogDecoder(file.name());
     return readStreamedSog(file.name(), StreamedChunks(file), choice, notes, progress);
 }

@@ -19,7 +19,9 @@ bool isStreamedSogFile(InputFile& file);
 // the list of names, and those of a chunk in their own order. A leaf without that level shows its next
 // coarser one, or nothing if it only has finer ones. A missing environment is left out. Throws Error in a
 // build that cannot decode WebP.
-Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes, const Progress& progress);
-Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes, const Progress& progress);
+Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes,
+                            const Progress& progress);
+Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes,
+                          const Progress& progress);
 
 }  // namespace binosplat

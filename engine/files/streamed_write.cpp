@@ -36,7 +36,9 @@ void sortAlongCurve(const Scene& scene, std::span<std::uint32_t> splats) {
     std::ranges::copy(order, splats.begin());
 }
 
-void addError(SplatError& sum, const SplatError& error) { sum.weight += error.weight, sum.square += error.square; }
+void addError(SplatError& sum, const SplatError& error) {
+    sum.weight += error.weight, sum.square += error.square;
+}
 
 fs::path findFreeName(const fs::path& folder) {
     for (int attempt = 0;; ++attempt) {
@@ -52,9 +54,10 @@ StreamedWriter::StreamedWriter(const fs::path& path, const StreamedWriteSettings
     : folder_(path.parent_path()), settings_(settings) {
     check(!folder_.empty(), "{}: must be in a folder of its own, as in scene/lod-meta.json", path.string());
     const fs::path parent = folder_.has_parent_path() ? folder_.parent_path() : ".";
-    check(fs::is_directory(parent), "{}: cannot be written, {} must be a directory", path.string(), parent.string());
-    check(!fs::exists(folder_) || (fs::is_directory(folder_) && fs::is_empty(folder_)), "{}: is there already, must be absent or empty",
-          folder_.string());
+    check(fs::is_directory(parent), "{}: cannot be written, {} must be a directory", path.string(),
+          parent.string());
+    check(!fs::exists(folder_) || (fs::is_directory(folder_) && fs::is_empty(folder_)),
+          "{}: is there already, must be absent or empty", folder_.string());
     part_ = findFreeName(folder_);
     std::error_code error;
     fs::create_directory(part_, error);
@@ -72,9 +75,11 @@ void StreamedWriter::cutLeaves(std::span<const glm::vec3> centres) {
     cut(centres, splats, 0);
 }
 
-std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<std::uint32_t> splats, int depth) {
+std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<std::uint32_t> splats,
+                                  int depth) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({.low = glm::vec3(kBeyond), .high = glm::vec3(-kBeyond), .splats = splats.size(), .parts = {}});
+    nodes_.push_back(
+        {.low = glm::vec3(kBeyond), .high = glm::vec3(-kBeyond), .splats = splats.size(), .parts = {}});
     glm::vec3 low(kBeyond), high(-kBeyond);
     for (const std::uint32_t splat : splats) {
         low = glm::min(low, centres[splat]);
@@ -82,7 +87,9 @@ std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<
     }
     const glm::vec3 sides = high - low;
     const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-    if (splats.size() <= settings_.leaf_splats || depth == kMostDepth || !(sides[axis] > 0.0f)) { return index; }
+    if (splats.size() <= settings_.leaf_splats || depth == kMostDepth || !(sides[axis] > 0.0f)) {
+        return index;
+    }
     const auto along = [&](std::uint32_t splat) { return centres[splat][axis]; };
     const auto half = splats.begin() + static_cast<std::ptrdiff_t>(splats.size() / 2);
     std::ranges::nth_element(splats, half, {}, along);
@@ -90,19 +97,24 @@ std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<
     float at = along(*half);
     if (at == low[axis]) {
         at = kBeyond;
-        for (const std::uint32_t splat : splats) { at = along(splat) > low[axis] ? std::min(at, along(splat)) : at; }
+        for (const std::uint32_t splat : splats) {
+            at = along(splat) > low[axis] ? std::min(at, along(splat)) : at;
+        }
     }
-    const auto middle = std::partition(splats.begin(), splats.end(), [&](std::uint32_t splat) { return along(splat) < at; });
+    const auto middle =
+        std::partition(splats.begin(), splats.end(), [&](std::uint32_t splat) { return along(splat) < at; });
     nodes_[index].axis = axis;
     nodes_[index].cut = at;
-    const std::uint32_t first = cut(centres, {splats.begin(), middle}, depth + 1), second = cut(centres, {middle, splats.end()}, depth + 1);
+    const std::uint32_t first = cut(centres, {splats.begin(), middle}, depth + 1),
+                        second = cut(centres, {middle, splats.end()}, depth + 1);
     nodes_[index].first = first;
     nodes_[index].second = second;
     return index;
 }
 
 // `within` the block that was begun last.
-void StreamedWriter::collectBlocks(std::uint32_t node, std::uint64_t most, bool within, Blocks& blocks) const {
+void StreamedWriter::collectBlocks(std::uint32_t node, std::uint64_t most, bool within,
+                                   Blocks& blocks) const {
     const Node& at = nodes_[node];
     if (!within && (at.splats <= most || at.axis < 0)) {
         ++blocks.count;
@@ -122,15 +134,20 @@ StreamedWriter::Blocks StreamedWriter::cutBlocks(std::uint64_t most) const {
     return blocks;
 }
 
-std::vector<std::vector<std::uint32_t>> StreamedWriter::sortInto(const Blocks& blocks, std::span<const glm::vec3> centres) const {
+std::vector<std::vector<std::uint32_t>> StreamedWriter::sortInto(const Blocks& blocks,
+                                                                 std::span<const glm::vec3> centres) const {
     std::vector<std::vector<std::uint32_t>> sorted(blocks.count);
-    for (std::uint32_t splat = 0; splat < centres.size(); ++splat) { sorted[blocks.of_node[leafOf(centres[splat])]].push_back(splat); }
+    for (std::uint32_t splat = 0; splat < centres.size(); ++splat) {
+        sorted[blocks.of_node[leafOf(centres[splat])]].push_back(splat);
+    }
     return sorted;
 }
 
 std::uint32_t StreamedWriter::leafOf(const glm::vec3& position) const {
     std::uint32_t node = 0;
-    while (nodes_[node].axis >= 0) { node = position[nodes_[node].axis] < nodes_[node].cut ? nodes_[node].first : nodes_[node].second; }
+    while (nodes_[node].axis >= 0) {
+        node = position[nodes_[node].axis] < nodes_[node].cut ? nodes_[node].first : nodes_[node].second;
+    }
     return node;
 }
 
@@ -141,8 +158,8 @@ void StreamedWriter::bound(std::uint32_t leaf, const Scene& scene, std::uint32_t
     nodes_[leaf].high = glm::max(nodes_[leaf].high, scene.positions[splat] + reach);
 }
 
-void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const SplatError> errors, std::size_t against,
-                         const Progress& progress) {
+void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const SplatError> errors,
+                         std::size_t against, const Progress& progress) {
     const std::size_t levels = std::max(counts_.size(), level + 1);
     counts_.resize(levels), chunks_.resize(levels), all_errors_.resize(levels);
     has_errors_ = has_errors_ && (level == 0 || !errors.empty());
@@ -158,9 +175,11 @@ void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const 
         if (chunk.empty()) { return; }
         const std::string name = fmt::format("{}_{}", level, chunks_[level]++);
         const auto part = [&](double share) {
-            progress((static_cast<double>(written) + share * static_cast<double>(chunk.size())) / static_cast<double>(scene.size()));
+            progress((static_cast<double>(written) + share * static_cast<double>(chunk.size())) /
+                     static_cast<double>(scene.size()));
         };
-        writeSogFolder(pickSplats(scene, chunk), (part_ / name).string(), progress ? Progress(part) : Progress());
+        writeSogFolder(pickSplats(scene, chunk), (part_ / name).string(),
+                       progress ? Progress(part) : Progress());
         files_.push_back(fmt::format(R"("{}/meta.json")", name));
         written += chunk.size();
         chunk.clear();
@@ -171,7 +190,9 @@ void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const 
         if (!chunk.empty() && chunk.size() + own.size() > settings_.chunk_splats) { write(); }
         sortAlongCurve(scene, own);
         Part part{level, files_.size(), chunk.size(), own.size(), against, {}};
-        for (const std::uint32_t splat : own) { addError(part.error, errors.empty() ? SplatError{} : errors[splat]); }
+        for (const std::uint32_t splat : own) {
+            addError(part.error, errors.empty() ? SplatError{} : errors[splat]);
+        }
         addError(all_errors_[level], part.error);
         nodes_[leaf].parts.push_back(part);
         chunk.insert(chunk.end(), own.begin(), own.end());
@@ -199,7 +220,8 @@ std::vector<double> StreamedWriter::errorsOf(const Node& leaf) const {
 // Boxes of everything below; returns the node's corners.
 glm::mat2x3 StreamedWriter::boundParents(std::uint32_t node) {
     if (nodes_[node].axis >= 0) {
-        const glm::mat2x3 first = boundParents(nodes_[node].first), second = boundParents(nodes_[node].second);
+        const glm::mat2x3 first = boundParents(nodes_[node].first),
+                          second = boundParents(nodes_[node].second);
         nodes_[node].low = glm::min(first[0], second[0]);
         nodes_[node].high = glm::max(first[1], second[1]);
     }
@@ -208,14 +230,16 @@ glm::mat2x3 StreamedWriter::boundParents(std::uint32_t node) {
 
 std::string StreamedWriter::jsonOf(std::uint32_t index) const {
     const Node& node = nodes_[index];
-    const std::string bound = fmt::format(R"("bound":{{"min":[{},{},{}],"max":[{},{},{}]}})", node.low.x, node.low.y, node.low.z,
-                                          node.high.x, node.high.y, node.high.z);
+    const std::string bound = fmt::format(R"("bound":{{"min":[{},{},{}],"max":[{},{},{}]}})", node.low.x,
+                                          node.low.y, node.low.z, node.high.x, node.high.y, node.high.z);
     if (node.axis < 0) {
         std::vector<std::string> lods;
         for (const Part& part : node.parts) {
-            lods.push_back(fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", part.level, part.file, part.offset, part.count));
+            lods.push_back(fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", part.level, part.file,
+                                       part.offset, part.count));
         }
-        const std::string errors = has_errors_ ? fmt::format(R"(,"errors":[{:.7g}])", fmt::join(errorsOf(node), ",")) : "";
+        const std::string errors =
+            has_errors_ ? fmt::format(R"(,"errors":[{:.7g}])", fmt::join(errorsOf(node), ",")) : "";
         return fmt::format(R"({{{},"lods":{{{}}}{}}})", bound, fmt::join(lods, ","), errors);
     }
     return fmt::format(R"({{{},"children":[{},{}]}})", bound, jsonOf(node.first), jsonOf(node.second));
@@ -224,9 +248,10 @@ std::string StreamedWriter::jsonOf(std::uint32_t index) const {
 void StreamedWriter::finish() {
     boundParents(0);
     const std::string text = fmt::format(
-        R"({{"version":1,"asset":{{"generator":"binosplat"}},"count":{},"counts":[{}],"lodLevels":{},"lodErrors":{},"filenames":[{}],"tree":{}}})",
-        std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}), fmt::join(counts_, ","), counts_.size(), has_errors_,
-        fmt::join(files_, ","), jsonOf(0));
+        R"({{"version":1,"asset":{{"generator":"binosplat"}},"count":{},"counts":[{}],"lodLevels":{},)"
+        R"("lodErrors":{},"filenames":[{}],"tree":{}}})",
+        std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}), fmt::join(counts_, ","),
+        counts_.size(), has_errors_, fmt::join(files_, ","), jsonOf(0));
     PartFile file((part_ / "lod-meta.json").string());
     file.write(text.data(), text.size());
     file.commit();

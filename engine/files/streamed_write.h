@@ -44,12 +44,13 @@ public:
     };
     [[nodiscard]] Blocks cutBlocks(std::uint64_t most) const;
     // The indices of these centres by block, ascending.
-    [[nodiscard]] std::vector<std::vector<std::uint32_t>> sortInto(const Blocks& blocks, std::span<const glm::vec3> centres) const;
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> sortInto(const Blocks& blocks,
+                                                                   std::span<const glm::vec3> centres) const;
     // Adds splats of a level: all, or those of some leaves to which none have been added. They go to the
     // leaves in which their centres lie, in Morton order. `errors`: for each splat, against level `against`,
     // an earlier one; empty at level 0, and otherwise if unknown.
-    void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {}, std::size_t against = 0,
-             const Progress& progress = {});
+    void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {},
+             std::size_t against = 0, const Progress& progress = {});
     // How many splats each level has so far.
     [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
     // A path for scratch files that goes with the writer: a folder that does not exist yet.

@@ -57,10 +57,12 @@ ZipArchive::Entry ZipArchive::find(const std::string& name) const {
     check(index >= 0, "{}: not in the archive", place);
     zip_stat_t entry;
     zip_stat_init(&entry);
-    check(zip_stat_index(state_->opened(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
+    check(zip_stat_index(state_->opened(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 &&
+              (entry.valid & ZIP_STAT_SIZE) != 0,
           "{}: its size cannot be read", place);
     check((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) == 0 || entry.encryption_method == ZIP_EM_NONE,
-          "{}: is encrypted and asks for a password, expected an archive without one (unpack it first)", place);
+          "{}: is encrypted and asks for a password, expected an archive without one (unpack it first)",
+          place);
     return {place, static_cast<std::uint64_t>(index), entry.size};
 }
 
@@ -96,7 +98,8 @@ std::size_t ZipReader::read(std::span<std::byte> target) {
 struct ZipArchive::State {};
 
 ZipArchive::ZipArchive(std::string path, std::string expected, Open) {
-    fail("{}: a zip archive, which this build cannot read as it is without libzip, expected {}, unpacked", path, expected);
+    fail("{}: a zip archive, which this build cannot read as it is without libzip, expected {}, unpacked",
+         path, expected);
 }
 std::vector<std::string> ZipArchive::names() const { return {}; }
 ZipArchive::Entry ZipArchive::find(const std::string&) const { return {}; }

@@ -22,10 +22,15 @@ bool isEmptied(const gpu::ListState& list) { return list.needed != list.count; }
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.history || target.from_history_later) {
-        return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .history = true, .boxes = 0};
+        return {.size_px = target.eye.size_px,
+                .classes = false,
+                .half_floats = target.kept.half_floats,
+                .history = true,
+                .boxes = 0};
     }
     if (!target.warp) { return {}; }
-    const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
+    const bool components =
+        target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
     return {.size_px = target.eye.size_px,
             .classes = target.keeps_classes || components,
             .half_floats = target.kept.half_floats,
@@ -35,7 +40,8 @@ WarpBufferNeeds needsOf(const TargetPlan& target) {
 
 }  // namespace
 
-FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity, std::function<void()> wait_for_frames)
+FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity,
+                     std::function<void()> wait_for_frames)
     : context_(context), first_capacity_(first_capacity), wait_for_frames_(std::move(wait_for_frames)) {
     shown_.reserve(kMostTargets);
     while (shown_.size() < kMostTargets) { shown_.emplace_back(context); }
@@ -70,12 +76,16 @@ void FrameRoom::recordShown(Commands& commands) {
 
 void FrameRoom::fitWarps(const FramePlan& plan) {
     std::array<WarpBufferNeeds, kMostTargets> needs;
-    for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }
+    for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) {
+        needs[t] = needsOf(plan.targets[t]);
+    }
     // If eyes have changed their roles, one's buffers serve the other; buffers that are no longer needed are
     // freed before anything is made.
     for (std::size_t t = 0; t < needs.size(); ++t) {
         for (std::size_t other = 0; other < needs.size() && warps_[t].needs() != needs[t]; ++other) {
-            if (warps_[other].needs() == needs[t] && needs[other] != needs[t]) { std::swap(warps_[t], warps_[other]); }
+            if (warps_[other].needs() == needs[t] && needs[other] != needs[t]) {
+                std::swap(warps_[t], warps_[other]);
+            }
         }
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
@@ -96,24 +106,31 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kep
     resize(picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
     resize(picture.depths, "depths", kept.depth && !kept.history ? pixels * sizeof(float) : 0);
     resize(picture.words, "depths of the history", kept.history ? pixels * sizeof(gpu::uint) : 0);
-    resize(picture.tiles, "tiles of the history", kept.history ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::HistoryTile) : 0);
+    resize(picture.tiles, "tiles of the history",
+           kept.history ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::HistoryTile) : 0);
 }
 
-void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
+void FrameRoom::fitPictures(const FramePlan& plan,
+                            const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
     std::uint64_t most_tiles = 0, moments_bytes = 0;
     std::array<bool, kFramePictures> is_used{};
     for (std::size_t t = 0; t < shown_.size(); ++t) {
         const bool used = t < plan.targets.size();
-        const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0), tiles = tilesOf(size_px);
+        const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0),
+                         tiles = tilesOf(size_px);
         most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
         const auto hidden = used && t < plan.eyes ? hidden_tiles[t] : std::span<const std::uint8_t>{};
         assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
         shown_[t].set(hidden, tiles);
         if (!used) { continue; }
-        if (plan.targets[t].kept.moments) { moments_bytes = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2); }
+        if (plan.targets[t].kept.moments) {
+            moments_bytes = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2);
+        }
         is_used[static_cast<std::size_t>(plan.targets[t].picture)] = true;
         // A history stays as it is.
-        if (plan.targets[t].history) { is_used[static_cast<std::size_t>(plan.targets[t].history->picture)] = true; }
+        if (plan.targets[t].history) {
+            is_used[static_cast<std::size_t>(plan.targets[t].history->picture)] = true;
+        }
     }
     if (plan.spare_picture) { is_used[static_cast<std::size_t>(*plan.spare_picture)] = true; }
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
@@ -125,28 +142,34 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         coarse = coarse || target.coarse;
         Kept kept = target.kept;
         kept.history = kept.history || plan.keeps_history;
-        if (plan.spare_picture) { fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept); }
+        if (plan.spare_picture) {
+            fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept);
+        }
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(moments_, "inverse depth moments", moments_bytes);
     const auto shares = static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead));
-    resize(lists_.tile_ranges, "tile ranges", most_tiles * std::max(shares * sizeof(gpu::uvec2), coarse ? sizeof(gpu::uvec3) : 0));
+    resize(lists_.tile_ranges, "tile ranges",
+           most_tiles * std::max(shares * sizeof(gpu::uvec2), coarse ? sizeof(gpu::uvec3) : 0));
     fitWarps(plan);
 }
 
 void FrameRoom::fitLists() {
-    const FrameCapacity first{std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs};
+    const FrameCapacity first{std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)),
+                              first_capacity_.pairs};
     if (lists_.capacity() == FrameCapacity{}) { growLists(first); }
 }
 
 bool FrameRoom::isCutShort(const FrameState& state) {
     return std::ranges::any_of(state.visible, isEmptied) ||
-           std::ranges::any_of(state.targets, [](const TargetState& target) { return isEmptied(target.pairs); });
+           std::ranges::any_of(state.targets,
+                               [](const TargetState& target) { return isEmptied(target.pairs); });
 }
 
 bool FrameRoom::isSourceVoid(const FramePlan& plan, const FrameState& state) {
     const auto source = static_cast<std::size_t>(plan.firstTarget());
-    return isEmptied(state.visible[static_cast<std::size_t>(plan.targets[source].list)]) || isEmptied(state.targets[source].pairs);
+    return isEmptied(state.visible[static_cast<std::size_t>(plan.targets[source].list)]) ||
+           isEmptied(state.targets[source].pairs);
 }
 
 double FrameRoom::spareFor(double ahead) const {
@@ -155,40 +178,52 @@ double FrameRoom::spareFor(double ahead) const {
     return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
 }
 
-std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs, bool is_ahead) const {
+std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs,
+                                      bool is_ahead) const {
     // Once moving pays again, patches are sorted in the lists alone.
     return plan.isSortedInPicture(target) && !(is_ahead && target.warp)
                ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs)
                : pairs;
 }
 
-FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const {
+FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead,
+                                 double spare) const {
     // `roomOf`: the memory for this many; it need not be proportional.
     const auto enough = [&](std::uint32_t needed, std::uint32_t capacity, const auto& roomOf) {
         const auto times = [&](double factor, double step) {
-            return static_cast<std::uint32_t>(std::min(std::ceil(needed * factor / step) * step, 2147482624.0));
+            return static_cast<std::uint32_t>(
+                std::min(std::ceil(needed * factor / step) * step, 2147482624.0));
         };
-        return roomOf(std::max(needed, times(ahead, 1.0))) <= capacity ? capacity : roomOf(std::max(needed, times(spare, 1024.0)));
+        return roomOf(std::max(needed, times(ahead, 1.0))) <= capacity
+                   ? capacity
+                   : roomOf(std::max(needed, times(spare, 1024.0)));
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
     // Each picture that is rendered at the same time as others has its own part of the lists of splats; the
     // same holds in the next frame, whose pictures meet no more splats than these.
     const auto ofAll = [](std::uint32_t needed, int shares) {
-        return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) * static_cast<std::uint32_t>(shares);
+        return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) *
+               static_cast<std::uint32_t>(shares);
     };
     const int lists = std::max(plan.shares(), plan.shares_ahead);
     for (const gpu::ListState& visible : state.visible) {
         const std::uint32_t most = std::max(ofAll(scene_->splatCount(), lists), 1u);
-        wanted.visible = std::max(wanted.visible, std::min(enough(ofAll(visible.needed, lists), now.visible, std::identity{}), most));
+        wanted.visible =
+            std::max(wanted.visible,
+                     std::min(enough(ofAll(visible.needed, lists), now.visible, std::identity{}), most));
     }
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
-        check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
+        check(pairs != UINT32_MAX,
+              "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed",
+              gpu::kMaxItems);
         // Without the source's pairs every tile seems cheap to render; how many the target needs is found on
         // the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
-        const auto roomOf = [&](std::uint32_t of) { return roomForPairs(plan, plan.targets[t], of, ahead > 1.0); };
+        const auto roomOf = [&](std::uint32_t of) {
+            return roomForPairs(plan, plan.targets[t], of, ahead > 1.0);
+        };
         wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs, roomOf));
     }
     return wanted;
@@ -231,9 +266,11 @@ bool FrameRoom::growIfItFits(const FramePlan& plan, const FrameState& state) {
 void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state) {
     // Of the target's work: all of it, or the share that is cheap to render plus the budget.
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())];
-    const std::uint32_t all = std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
+    const std::uint32_t all =
+        std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
     FrameCapacity wanted = lists_.capacity();
-    wanted.pairs = std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all, false));
+    wanted.pairs =
+        std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all, false));
     if (wanted != lists_.capacity()) { tryToGrow(wanted); }
 }
 

@@ -21,7 +21,8 @@ public:
     static constexpr double kRoomAhead = 1.15;
 
     // `wait_for_frames`: returns once no frame in flight uses this room; called before any of it is freed.
-    FrameRoom(const Context& context, const FrameCapacity& first_capacity, std::function<void()> wait_for_frames);
+    FrameRoom(const Context& context, const FrameCapacity& first_capacity,
+              std::function<void()> wait_for_frames);
 
     // Lists hold splats of `scene` from now on.
     void show(const GpuScene& scene);
@@ -60,10 +61,16 @@ public:
 
     [[nodiscard]] const FrameBuffers& lists() const { return lists_; }
     // By TargetPlan::picture, which need not be the target's number.
-    [[nodiscard]] const Picture& picture(int picture) const { return pictures_[static_cast<std::size_t>(picture)]; }
+    [[nodiscard]] const Picture& picture(int picture) const {
+        return pictures_[static_cast<std::size_t>(picture)];
+    }
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
-    [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
-    [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
+    [[nodiscard]] const WarpBuffers& warp(int target) const {
+        return warps_[static_cast<std::size_t>(target)];
+    }
+    [[nodiscard]] const ShownTiles& shown(int target) const {
+        return shown_[static_cast<std::size_t>(target)];
+    }
     // For the scene's changes, in all pictures of a frame: made when it is first needed.
     [[nodiscard]] const Buffer& changedRects();
     // Call this before the passes of a frame.
@@ -75,11 +82,13 @@ private:
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
     // The capacity of PairBuffers for this many pairs of a target.
-    [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs, bool is_ahead) const;
+    [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target,
+                                             std::uint32_t pairs, bool is_ahead) const;
     // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
     // Capacity for `spare` times what was needed, in the lists that must grow.
-    [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const;
+    [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead,
+                                        double spare) const;
     [[nodiscard]] double spareFor(double ahead) const;
 
     const Context& context_;

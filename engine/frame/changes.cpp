@@ -17,7 +17,8 @@ std::optional<gpu::ChangedRect> rectOf(const SceneChange& change, const Eye& eye
     const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
     std::array<glm::dvec3, 8> corners;
     for (std::size_t c = 0; c < corners.size(); ++c) {
-        const glm::dvec3 at((c & 1) != 0 ? change.high.x : change.low.x, (c & 2) != 0 ? change.high.y : change.low.y,
+        const glm::dvec3 at((c & 1) != 0 ? change.high.x : change.low.x,
+                            (c & 2) != 0 ? change.high.y : change.low.y,
                             (c & 4) != 0 ? change.high.z : change.low.z);
         corners[c] = camera_from_world * (at - eye.world_from_camera.position);
     }
@@ -40,7 +41,8 @@ std::optional<gpu::ChangedRect> rectOf(const SceneChange& change, const Eye& eye
     }
     const double border = kBorderPx * eye.own_pixel_px;
     const glm::dvec2 size(eye.size_px);
-    const glm::dvec2 begin = glm::max(glm::floor(low - border), 0.0), end = glm::min(glm::ceil(high + border), size);
+    const glm::dvec2 begin = glm::max(glm::floor(low - border), 0.0),
+                     end = glm::min(glm::ceil(high + border), size);
     if (!(begin.x < end.x && begin.y < end.y)) { return std::nullopt; }
     return gpu::ChangedRect{glm::uvec2(begin), glm::uvec2(end), gpu::kChangedError * change.amount};
 }

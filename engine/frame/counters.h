@@ -60,7 +60,8 @@ struct FrameCounters {
     std::optional<Ahead> ahead;
     // For a scene that is streamed or moves, from its loader.
     struct Streaming {
-        std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0, scene_frames_late = 0;
+        std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0,
+                      scene_frames_late = 0;
     };
     std::optional<Streaming> streaming;
 

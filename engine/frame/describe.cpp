@@ -10,7 +10,11 @@ namespace {
 gpu::EyeGaze gazeOf(const TargetPlan& target) {
     const std::optional<Gaze>& gaze = target.warp ? target.warp->gaze : target.gaze;
     if (gaze) { return eyeGazeOf(*gaze, target.eye.intrinsics); }
-    return {.direction = {0, 0, 1}, .clear_rad = 4.0f, .pixel_cycle = 1.0f, .focal_px = {1, 1}, .principal_px = {0, 0}};
+    return {.direction = {0, 0, 1},
+            .clear_rad = 4.0f,
+            .pixel_cycle = 1.0f,
+            .focal_px = {1, 1},
+            .principal_px = {0, 0}};
 }
 
 gpu::uint tileCountOf(const TargetPlan& target) {
@@ -35,18 +39,21 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
     if (target.history) {
         state.history = historyViewOf(target.eye, target.history->eye, plan.near, glm::vec3(plan.background));
         state.history_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
-        state.warp =
-            warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
+        state.warp = warpViewOf(
+            {}, target.eye.size_px, 0,
+            {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
     }
     if (target.warp) {
-        state.warp = warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, index).row_words, target.warp->settings);
+        state.warp = warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, index).row_words,
+                                target.warp->settings);
         state.warp_counters = firstCountersOf(target.warp->settings, target.eye.size_px);
     }
     room.warp(index).tell(state);
     if (target.choice == TileChoice::kAll) {
         state.tile_mask = room.shown(index).mask();
         state.tile_list = {};
-        state.full_tiles = room.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
+        state.full_tiles =
+            room.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
     }
     state.colours = picture.colours.address<gpu::vec4>();
     if (target.kept.depth) { state.depths = picture.depths.address<float>(); }
@@ -62,7 +69,8 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
         state.row_words = target.eye.size_px.x;
     }
     const std::optional<int> warped = plan.warpedTarget();
-    if (target.kept.moving && warped && plan.targets[static_cast<std::size_t>(*warped)].warp->source == index) {
+    if (target.kept.moving && warped &&
+        plan.targets[static_cast<std::size_t>(*warped)].warp->source == index) {
         const MovingWords words = wordsOf(plan, *warped);
         state.moving = words.moving;
         const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;
@@ -72,7 +80,8 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
     if (plan.shares() > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
     state.measured = plan.measured_part;
     state.is_made = target.history ? 1 : 0;
-    state.area = static_cast<float>(target.history ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
+    state.area =
+        static_cast<float>(target.history ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
     state.counters.may_be_coarse = target.coarse ? 1 : 0;
     state.counters.gaze = gazeOf(target);
 }

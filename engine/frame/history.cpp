@@ -21,7 +21,8 @@ constexpr double kFarthestHistoryMetres = 0.05, kFarthestHistoryShare = 0.8;
 constexpr double kMostZoom = 2.0;
 
 bool moves(const Pose& from, const Pose& to, double farthest) {
-    const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
+    const bool turns =
+        std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
     return turns || glm::distance(from.position, to.position) > farthest;
 }
 
@@ -46,26 +47,33 @@ bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_
     if (eyes.size() != before.size()) { return true; }
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const Intrinsics &lens = before[e].intrinsics, &other_lens = eyes[e].intrinsics;
-        const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpZoom * lens.fx;
-        if (zooms || moves(before[e].world_from_camera, eyes[e].world_from_camera, kJumpMetres * units_per_metre)) { return true; }
+        const bool zooms =
+            std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpZoom * lens.fx;
+        if (zooms ||
+            moves(before[e].world_from_camera, eyes[e].world_from_camera, kJumpMetres * units_per_metre)) {
+            return true;
+        }
     }
     return false;
 }
 
 double farthestHistory(std::span<const Eye> eyes, double units_per_metre) {
-    const double between = glm::distance(eyes.front().world_from_camera.position, eyes.back().world_from_camera.position);
+    const double between =
+        glm::distance(eyes.front().world_from_camera.position, eyes.back().world_from_camera.position);
     return std::max(kFarthestHistoryMetres * units_per_metre, kFarthestHistoryShare * between);
 }
 
 bool canComeFrom(const Eye& history, const Eye& eye, double farthest) {
-    const double zoom_x = eye.intrinsics.fx / history.intrinsics.fx, zoom_y = eye.intrinsics.fy / history.intrinsics.fy;
+    const double zoom_x = eye.intrinsics.fx / history.intrinsics.fx,
+                 zoom_y = eye.intrinsics.fy / history.intrinsics.fy;
     const bool zooms = std::min(zoom_x, zoom_y) < 1.0 / kMostZoom || std::max(zoom_x, zoom_y) > kMostZoom;
     return !zooms && !moves(history.world_from_camera, eye.world_from_camera, farthest);
 }
 
 MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSettings& settings) {
     const int dominant = settings.mode == Mode::kMono ? 0 : settings.dominant;
-    return {stereoSettingsOf(settings), dominant, eyes[0].size_px, settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
+    return {stereoSettingsOf(settings), dominant, eyes[0].size_px,
+            settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
 }
 
 }  // namespace binosplat

@@ -12,8 +12,8 @@ namespace binosplat {
 struct FrameShape {
     Mode mode = Mode::kMono;
     int dominant = 0;
-    bool per_eye = false, half_floats = false, keep_depth = false, keep_both_depths = false, keep_moments = false, keep_classes = false,
-         center_rois = false, half_periphery = false;
+    bool per_eye = false, half_floats = false, keep_depth = false, keep_both_depths = false,
+         keep_moments = false, keep_classes = false, center_rois = false, half_periphery = false;
     std::array<glm::uvec2, 2> sizes_px{};
     bool operator==(const FrameShape&) const = default;
 };
@@ -23,8 +23,8 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
 // The farthest that a history may lie from these eyes, in scene units.
 double farthestHistory(std::span<const Eye> eyes, double units_per_metre);
-// True if what `history` saw is of use for `eye`: their places and axes are close. Sizes may differ, and angles
-// by less than a factor of two.
+// True if what `history` saw is of use for `eye`: their places and axes are close. Sizes may differ, and
+// angles by less than a factor of two.
 bool canComeFrom(const Eye& history, const Eye& eye, double farthest);
 
 // Whether warping pays: `predicted` does without as long as it did not pay in the last known frame with the

@@ -6,17 +6,21 @@
 
 namespace binosplat {
 
-StereoFrame::Lent StereoFrame::lend(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append) {
+StereoFrame::Lent StereoFrame::lend(std::span<const Eye> eyes, const FrameSettings& settings,
+                                    const Append& append) {
     finish();
     // What is freed from here on stays until the earlier frames have come back.
     const std::uint64_t number = context_.freedBuffers().beginFrame();
     try {
-        if (idle_.empty()) { idle_.push_back(std::make_unique<Flight>(context_, Commands::Level::kSecondary)); }
+        if (idle_.empty()) {
+            idle_.push_back(std::make_unique<Flight>(context_, Commands::Level::kSecondary));
+        }
         std::unique_ptr<Flight>& flight = lent_[number] = std::move(idle_.back());
         idle_.pop_back();
         if (FrameRoom::isCutShort(state_)) {
             room_.growIfItFits(plan_, state_);
-        } else if (!plan_.targets.empty() && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead)) {
+        } else if (!plan_.targets.empty() && room_.fitsAhead() &&
+                   !room_.hasRoom(plan_, stateAhead(), kRoomAhead)) {
             room_.makeRoomAhead(plan_, stateAhead());
         }
         prepare(eyes, settings);

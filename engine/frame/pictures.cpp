@@ -20,7 +20,8 @@ float depthOf(gpu::uint word, float alpha) {
 }  // namespace
 
 template <typename T>
-std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t most_bytes, std::uint64_t from_byte) {
+std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t most_bytes,
+                                       std::uint64_t from_byte) {
     const std::uint64_t bytes = std::min(buffer.bytes() - std::min(buffer.bytes(), from_byte), most_bytes);
     if (bytes == 0) { return {}; }
     const Buffer readback(context_, "read-back", bytes, MemoryKind::kReadback);
@@ -64,15 +65,23 @@ std::optional<double> StereoFrame::depthAt(int eye, glm::uvec2 pixel) {
     if (!has_words && source.depths.bytes() == 0) { return std::nullopt; }
     const float alpha =
         source.half_floats
-            ? glm::unpackHalf2x16(readBuffer<gpu::uint>(source.colours, sizeof(gpu::uint), (2 * at + 1) * sizeof(gpu::uint)).at(0)).y
+            ? glm::unpackHalf2x16(
+                  readBuffer<gpu::uint>(source.colours, sizeof(gpu::uint), (2 * at + 1) * sizeof(gpu::uint))
+                      .at(0))
+                  .y
             : readBuffer<float>(source.colours, sizeof(float), (4 * at + 3) * sizeof(float)).at(0);
     if (alpha < 0.5f) { return std::nullopt; }
-    const float depth = has_words ? depthOf(readBuffer<gpu::uint>(source.words, sizeof(gpu::uint), at * sizeof(gpu::uint)).at(0), alpha)
-                                  : readBuffer<float>(source.depths, sizeof(float), at * sizeof(float)).at(0);
+    const float depth =
+        has_words
+            ? depthOf(readBuffer<gpu::uint>(source.words, sizeof(gpu::uint), at * sizeof(gpu::uint)).at(0),
+                      alpha)
+            : readBuffer<float>(source.depths, sizeof(float), at * sizeof(float)).at(0);
     return static_cast<double>(depth) / static_cast<double>(alpha);
 }
 
-Image StereoFrame::readInverseDepthMoments() { return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }
+Image StereoFrame::readInverseDepthMoments() {
+    return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())};
+}
 
 const WarpBuffers* StereoFrame::chosenTiles(int eye) const {
     if (static_cast<std::size_t>(eye) >= plan_.targets.size()) { return nullptr; }
@@ -91,8 +100,9 @@ std::vector<std::uint32_t> StereoFrame::readTileKinds() {
     if (warped) { return readTileKinds(*warped); }
     // Or that of the single eye that is made from the other.
     const bool of_left = !plan_.targets[kLeft].history.has_value();
-    return plan_.eyes == 2 && of_left == plan_.targets[kRight].history.has_value() ? readTileKinds(of_left ? kRight : kLeft)
-                                                                                   : std::vector<std::uint32_t>{};
+    return plan_.eyes == 2 && of_left == plan_.targets[kRight].history.has_value()
+               ? readTileKinds(of_left ? kRight : kLeft)
+               : std::vector<std::uint32_t>{};
 }
 
 std::vector<std::uint8_t> StereoFrame::readPixelClasses() {

@@ -17,7 +17,8 @@ void keepForWarp(Kept& source, const Warp& warp) {
     source.moving = true;
     source.depth_choice = warp.settings.depth_choice;
     // Odd rows will be warped like even ones, unless their moments are wanted.
-    source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
+    source.even_rows =
+        predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
 }
 
 }  // namespace
@@ -25,7 +26,8 @@ void keepForWarp(Kept& source, const Warp& warp) {
 // A picture that is neither a history nor the spare one.
 int fourthPicture(const Histories& histories) {
     int picture = 0;
-    while (picture == histories.spare || picture == histories.of_eyes[0]->picture || picture == histories.of_eyes[1]->picture) {
+    while (picture == histories.spare || picture == histories.of_eyes[0]->picture ||
+           picture == histories.of_eyes[1]->picture) {
         ++picture;
     }
     assert(picture < static_cast<int>(kFramePictures));
@@ -33,14 +35,16 @@ int fourthPicture(const Histories& histories) {
 }
 
 // `target` is made from `history`, and some of its tiles are chosen to be rendered.
-void makeFromHistory(TargetPlan& target, const History& history, const FrameSettings& settings, std::size_t eye) {
+void makeFromHistory(TargetPlan& target, const History& history, const FrameSettings& settings,
+                     std::size_t eye) {
     target.history = history;
     target.choice = TileChoice::kHistory;
     target.gaze = settings.gazes[eye];
 }
 
 bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
-    const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasHistory(settings.mode);
+    const bool may =
+        settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasHistory(settings.mode);
     const auto gazes = std::span(settings.gazes).first(eyes);
     return settings.half_periphery && may && !settings.keep_moments && !settings.mesh_depths[0] &&
            std::ranges::all_of(gazes, [](const auto& gaze) { return gaze.has_value(); });
@@ -60,15 +64,16 @@ void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan lis
     plan.makeList(list);
     plan.steps.push_back({Step::Kind::kRender, order[0]});
     if (!plan.shares_order) {
-        plan.makeList(
-            {.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[static_cast<std::size_t>(order[1])].role, .culls = false});
+        plan.makeList({.eyes = {.order_eye = order[1], .list = 0},
+                       .role = plan.targets[static_cast<std::size_t>(order[1])].role,
+                       .culls = false});
     }
     plan.steps.push_back({Step::Kind::kRender, order[1]});
 }
 
 // Both eyes from their histories; the tiles that are rendered again are chosen before anything is culled.
-void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Histories& histories,
-                  const ListPlan& list) {
+void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes,
+                  const Histories& histories, const ListPlan& list) {
     const std::array order{plan.dominant, 1 - plan.dominant};
     int picture = histories.spare;
     for (const int e : order) {
@@ -104,7 +109,8 @@ void planAlternate(FramePlan& plan, const Histories& histories, const ListPlan& 
 }
 
 std::uint32_t countHidden(std::span<const std::uint8_t> hidden_tiles) {
-    return static_cast<std::uint32_t>(hidden_tiles.size() - static_cast<std::size_t>(std::ranges::count(hidden_tiles, std::uint8_t{0})));
+    return static_cast<std::uint32_t>(
+        hidden_tiles.size() - static_cast<std::size_t>(std::ranges::count(hidden_tiles, std::uint8_t{0})));
 }
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
@@ -114,8 +120,9 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
 }
 
 int FramePlan::firstTarget() const {
-    const auto found = std::ranges::find_if(
-        steps, [](const Step& step) { return step.kind == Step::Kind::kRender || step.kind == Step::Kind::kRenderAll; });
+    const auto found = std::ranges::find_if(steps, [](const Step& step) {
+        return step.kind == Step::Kind::kRender || step.kind == Step::Kind::kRenderAll;
+    });
     return found == steps.end() ? 0 : found->index;
 }
 
@@ -125,7 +132,8 @@ int FramePlan::shares() const {
 }
 
 std::optional<int> FramePlan::warpedTarget() const {
-    const auto found = std::ranges::find_if(targets, [](const TargetPlan& target) { return target.warp.has_value(); });
+    const auto found =
+        std::ranges::find_if(targets, [](const TargetPlan& target) { return target.warp.has_value(); });
     return found == targets.end() ? std::nullopt : std::optional(static_cast<int>(found - targets.begin()));
 }
 
@@ -137,7 +145,8 @@ Histories historiesAfter(const FramePlan& plan, const Histories& before) {
     }
     // A picture that was a history is free, once this frame has read it.
     const auto isFree = [&](int picture) {
-        return std::ranges::none_of(after.of_eyes, [&](const auto& history) { return history && history->picture == picture; });
+        return std::ranges::none_of(
+            after.of_eyes, [&](const auto& history) { return history && history->picture == picture; });
     };
     if (plan.spare_picture) { after.spare = *plan.spare_picture; }
     for (std::size_t e = 0; e < before.of_eyes.size() && !isFree(after.spare); ++e) {
@@ -147,7 +156,8 @@ Histories historiesAfter(const FramePlan& plan, const Histories& before) {
     return after;
 }
 
-FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Histories& histories) {
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move,
+                    const Histories& histories) {
     const bool keeps_history = hasHistory(settings.mode) && settings.keep_history;
     const bool has_history = keeps_history && histories.of_eyes[0] && histories.of_eyes[1];
     // If no history is kept, `temporal` falls back to `predicted`. If there is none, as after a jump, both
@@ -161,32 +171,34 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
-          "the eyes have {}x{} and {}x{} pixels: to reproject one into the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
-          eyes.back().size_px.x, eyes.back().size_px.y);
+          "the eyes have {}x{} and {}x{} pixels: to reproject one into the other they must be equal",
+          eyes[0].size_px.x, eyes[0].size_px.y, eyes.back().size_px.x, eyes.back().size_px.y);
     const int first = one_eye ? 0 : settings.dominant, second = 1 - first;
     // True if each eye is culled and ordered by itself.
-    const bool apart = one_eye || mode == Mode::kTwoPass || mode == Mode::kAlternate || (mode == Mode::kPaper && settings.per_eye);
+    const bool apart = one_eye || mode == Mode::kTwoPass || mode == Mode::kAlternate ||
+                       (mode == Mode::kPaper && settings.per_eye);
 
     FramePlan plan{.near = settings.near, .background = settings.background};
     plan.dominant = first;
     plan.eyes = eyes.size();
     for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {
         const bool is_first = e == first;
-        plan.targets.push_back({.eye = eyes[e],
-                                .role = one_eye    ? Role::kNone
-                                        : is_first ? Role::kDominant
-                                                   : Role::kAffiliated,
-                                .list = apart ? e : 0,
-                                .tiles_hidden = countHidden(settings.hidden_tiles[static_cast<std::size_t>(e)]),
-                                .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
-                                         .moments = is_first && settings.keep_moments,
-                                         .half_floats = settings.half_floats,
-                                         .cut = settings.mesh_depths[static_cast<std::size_t>(e)].has_value(),
-                                         .history = keeps_history},
-                                .mesh_depths = settings.mesh_depths[static_cast<std::size_t>(e)],
-                                .picture = e,
-                                .from_history_later = keeps_history && settings.mode == Mode::kTemporal,
-                                .coarse = coarse});
+        plan.targets.push_back(
+            {.eye = eyes[e],
+             .role = one_eye    ? Role::kNone
+                     : is_first ? Role::kDominant
+                                : Role::kAffiliated,
+             .list = apart ? e : 0,
+             .tiles_hidden = countHidden(settings.hidden_tiles[static_cast<std::size_t>(e)]),
+             .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
+                      .moments = is_first && settings.keep_moments,
+                      .half_floats = settings.half_floats,
+                      .cut = settings.mesh_depths[static_cast<std::size_t>(e)].has_value(),
+                      .history = keeps_history},
+             .mesh_depths = settings.mesh_depths[static_cast<std::size_t>(e)],
+             .picture = e,
+             .from_history_later = keeps_history && settings.mode == Mode::kTemporal,
+             .coarse = coarse});
         if (coarse) { plan.targets.back().gaze = settings.gazes[static_cast<std::size_t>(e)]; }
     }
     plan.keeps_history = keeps_history;
@@ -194,16 +206,18 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
     const auto listOf = [&](int e) {
-        plan.makeList({.eyes = {.first = e, .count = 1, .order_eye = e, .list = e, .middle = middle}, .role = plan.targets[e].role});
+        plan.makeList({.eyes = {.first = e, .count = 1, .order_eye = e, .list = e, .middle = middle},
+                       .role = plan.targets[e].role});
     };
     const auto render = [&](int e) { plan.steps.push_back({Step::Kind::kRender, e}); };
-    const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth};
+    const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle},
+                        .role = Role::kBoth};
 
     if (mode == Mode::kAlternate) {
         const int full = histories.turn;
-        planAlternate(
-            plan, histories,
-            {.eyes = {.first = full, .count = 1, .order_eye = full, .list = full, .middle = middle}, .role = plan.targets[full].role});
+        planAlternate(plan, histories,
+                      {.eyes = {.first = full, .count = 1, .order_eye = full, .list = full, .middle = middle},
+                       .role = plan.targets[full].role});
         return plan;
     }
     const EyeRelation relation = relate(eyes[first], eyes[one_eye ? first : second]);
@@ -238,7 +252,9 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         plan.steps.push_back({Step::Kind::kWarp, second});
     }
     if (target.choice == TileChoice::kNone) { return plan; }
-    if (!apart && !plan.shares_order) { plan.makeList({.eyes = {.order_eye = second, .list = 0}, .role = target.role, .culls = false}); }
+    if (!apart && !plan.shares_order) {
+        plan.makeList({.eyes = {.order_eye = second, .list = 0}, .role = target.role, .culls = false});
+    }
     render(second);
     return plan;
 }

@@ -59,8 +59,8 @@ struct TargetPlan {
     TileChoice choice = TileChoice::kAll;        // of the tiles that are rendered
     std::optional<Warp> warp = {};
     std::optional<History> history = {};  // what it is made from instead: its eye's last picture
-    std::optional<Gaze> gaze = {};        // for the choice among what the history has left, and of coarse tiles
-    int picture = 0;                      // which of the room's pictures it becomes
+    std::optional<Gaze> gaze = {};  // for the choice among what the history has left, and of coarse tiles
+    int picture = 0;                // which of the room's pictures it becomes
     bool keeps_classes = false;
     bool from_history_later = false;  // frames after this one make it from a history: what they need is kept
     bool coarse = false;              // tiles that the eye does not see sharply may be
@@ -121,9 +121,10 @@ struct FramePlan {
 [[nodiscard]] bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes);
 
 // The only place that knows what a mode does. Throws Error if eyes that are made from one another have
-// different sizes. `may_move`: warping paid in the frame before, or that is unknown. `histories`: the histories
-// that earlier frames have left; their pictures may have other sizes.
-FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Histories& histories = {});
+// different sizes. `may_move`: warping paid in the frame before, or that is unknown. `histories`: the
+// histories that earlier frames have left; their pictures may have other sizes.
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move,
+                    const Histories& histories = {});
 // What such a frame leaves to the next one.
 Histories historiesAfter(const FramePlan& plan, const Histories& before);
 

@@ -68,23 +68,24 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
 void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
     const Warp& warp = *target.warp;
-    binosplat::recordWarp(kernels, commands,
-                          {.scene = scene,
-                           .buffers = room.lists(),
-                           .warp = room.warp(index),
-                           .settings = warp.settings,
-                           .rectified = warp.relation.rectified,
-                           .may_move = warp.may_move,
-                           .list = target.list,
-                           .index = index,
-                           .role = target.role,
-                           .source = room.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
-                           .target = room.picture(target.picture),
-                           .source_shown = room.shown(warp.source),
-                           .target_shown = room.shown(index),
-                           .words = wordsOf(plan, index),
-                           .background = glm::vec3(plan.background),
-                           .target_gaze = warp.gaze.has_value()});
+    binosplat::recordWarp(
+        kernels, commands,
+        {.scene = scene,
+         .buffers = room.lists(),
+         .warp = room.warp(index),
+         .settings = warp.settings,
+         .rectified = warp.relation.rectified,
+         .may_move = warp.may_move,
+         .list = target.list,
+         .index = index,
+         .role = target.role,
+         .source = room.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
+         .target = room.picture(target.picture),
+         .source_shown = room.shown(warp.source),
+         .target_shown = room.shown(index),
+         .words = wordsOf(plan, index),
+         .background = glm::vec3(plan.background),
+         .target_gaze = warp.gaze.has_value()});
 }
 
 HistoryInputs FrameRecorder::historyOf(const FramePlan& plan, int index) const {
@@ -103,13 +104,16 @@ HistoryInputs FrameRecorder::historyOf(const FramePlan& plan, int index) const {
 void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) const {
     std::vector<HistoryInputs> eyes;
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
-        if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kHistory) { eyes.push_back(historyOf(plan, t)); }
+        if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kHistory) {
+            eyes.push_back(historyOf(plan, t));
+        }
     }
     recordChanged(commands, plan, eyes);
     binosplat::recordChoice(kernels, commands, eyes, static_cast<gpu::uint>(plan.shares()));
 }
 
-void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const HistoryInputs> pictures) const {
+void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan,
+                                  std::span<const HistoryInputs> pictures) const {
     if (!changes_known) { return; }
     const std::optional<std::span<const SceneChange>> changes = scene.changesSince(*changes_known);
     if (!changes || changes->empty()) { return; }
@@ -117,7 +121,8 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std
     std::vector<std::size_t> begins;
     for (const HistoryInputs& picture : pictures) {
         begins.push_back(rects.size());
-        const auto its = rectsOf(*changes, plan.targets[static_cast<std::size_t>(picture.index)].eye, plan.near);
+        const auto its =
+            rectsOf(*changes, plan.targets[static_cast<std::size_t>(picture.index)].eye, plan.near);
         rects.insert(rects.end(), its.begin(), its.end());
     }
     if (rects.empty()) { return; }
@@ -125,7 +130,8 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std
     const Buffer& buffer = room.changedRects();
     commands.update(buffer, rects.data(), rects.size() * sizeof(gpu::ChangedRect));
     for (std::size_t p = 0; p < pictures.size(); ++p) {
-        binosplat::recordChanged(kernels, commands, pictures[p], buffer.address<gpu::ChangedRect>(begins[p] * sizeof(gpu::ChangedRect)),
+        binosplat::recordChanged(kernels, commands, pictures[p],
+                                 buffer.address<gpu::ChangedRect>(begins[p] * sizeof(gpu::ChangedRect)),
                                  static_cast<gpu::uint>(begins[p + 1] - begins[p]));
     }
 }
@@ -156,11 +162,14 @@ void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, in
         targets.all_tiles += tiles.x * tiles.y;
     }
     const PairBuffers& pairs = room.lists().pairs;
-    targets.pairs = plan.isSortedInPicture(planned) ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(targets.all_tiles))
-                                                    : pairs.arrays();
-    targets.lists_chosen =
-        std::ranges::any_of(plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
-    binosplat::recordPictures(kernels, commands, scene, room.lists(), targets, count > 1 ? Role::kBoth : planned.role);
+    targets.pairs =
+        plan.isSortedInPicture(planned)
+            ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(targets.all_tiles))
+            : pairs.arrays();
+    targets.lists_chosen = std::ranges::any_of(
+        plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
+    binosplat::recordPictures(kernels, commands, scene, room.lists(), targets,
+                              count > 1 ? Role::kBoth : planned.role);
 }
 
 }  // namespace binosplat

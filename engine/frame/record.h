@@ -23,7 +23,9 @@ struct FrameRecorder {
     // Only the culling: how many splats the lists need.
     void recordCulling(Commands& commands, const FramePlan& plan) const;
     // The end of that: what the device reports is copied to `readback`.
-    void recordReport(Commands& commands, const Buffer& readback) const { commands.copy(room.lists().state, readback, sizeof(FrameState)); }
+    void recordReport(Commands& commands, const Buffer& readback) const {
+        commands.copy(room.lists().state, readback, sizeof(FrameState));
+    }
 
 private:
     void begin(Commands& commands, bool times_passes) const;
@@ -33,7 +35,8 @@ private:
     void describe(const FramePlan& plan, int index, TargetState& state) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
-    void recordChanged(Commands& commands, const FramePlan& plan, std::span<const HistoryInputs> pictures) const;
+    void recordChanged(Commands& commands, const FramePlan& plan,
+                       std::span<const HistoryInputs> pictures) const;
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
     [[nodiscard]] HistoryInputs historyOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;

@@ -35,21 +35,24 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
     counters.splats_newcomers = warp.newcomers;
     counters.bytes = buffers.bytes();
     const bool rectified = target.warp->relation.rectified;
-    result.stereo_bytes_per_pixel = warpTraffic({.settings = settings,
-                                                 .may_move = target.warp->may_move,
-                                                 .moves_rows = movesRows(rectified, buffers),
-                                                 .even_rows = settings.choice == TileChoice::kPredicted && rectified,
-                                                 .sums_even_rows = source.kept.even_rows,
-                                                 .half_floats = target.kept.half_floats,
-                                                 .target_depth = target.kept.depth,
-                                                 .classes = has_classes,
-                                                 .size_px = target.eye.size_px,
-                                                 .counters = warp,
-                                                 .visible = frame.state.visible[0].count});
+    result.stereo_bytes_per_pixel =
+        warpTraffic({.settings = settings,
+                     .may_move = target.warp->may_move,
+                     .moves_rows = movesRows(rectified, buffers),
+                     .even_rows = settings.choice == TileChoice::kPredicted && rectified,
+                     .sums_even_rows = source.kept.even_rows,
+                     .half_floats = target.kept.half_floats,
+                     .target_depth = target.kept.depth,
+                     .classes = has_classes,
+                     .size_px = target.eye.size_px,
+                     .counters = warp,
+                     .visible = frame.state.visible[0].count});
     const std::uint32_t shown = buffers.tileCount() - target.tiles_hidden;
     counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(state.chosen_tiles.count) / shown : 0.0;
-    if (warp.picture_cost > 0) { result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost; }
+    if (warp.picture_cost > 0) {
+        result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost;
+    }
 }
 
 // For both eyes together, since they share one budget.
@@ -81,7 +84,8 @@ void countHistory(const FrameFacts& frame, FrameResult& result) {
     // Expectations for rendered tiles err in the same way, and those errors are known.
     result.warp_error = left / all_steps * (expected > 0.0 ? std::min(found / expected, 1.0) : 1.0);
     result.half_loss = wider / all_steps * gpu::kMeasuredParts;
-    result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
+    result.tiles_rendered =
+        shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
     if (work.full > 0) {
         result.work_rendered = static_cast<double>(work.patched) / static_cast<double>(work.full);
         counters.work = work;
@@ -98,12 +102,16 @@ void countCoarse(const gpu::EyeCounters& eye, FrameCounters& counters) {
 }
 
 bool seesNothing(const FrameCounters& counters) {
-    if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
+    if (std::ranges::any_of(counters.targets,
+                            [](const TargetCounters& target) { return target.tile_pairs > 0; })) {
+        return false;
+    }
     // Pictures that are made from their histories may need no splat: then their tiles know the cost of making
     // them. An empty tile counts for kTilePairs.
     std::uint64_t tiles = 0;
     for (const TargetCounters& target : counters.targets) { tiles += target.tiles; }
-    return !counters.warped || !counters.warped->work || counters.warped->work->full <= gpu::kTilePairs * tiles;
+    return !counters.warped || !counters.warped->work ||
+           counters.warped->work->full <= gpu::kTilePairs * tiles;
 }
 
 using LeaveOut = std::function<void(bool condition, std::string_view sentence)>;
@@ -111,9 +119,12 @@ using LeaveOut = std::function<void(bool condition, std::string_view sentence)>;
 void explainWarp(const FrameFacts& frame, std::size_t index, const LeaveOut& leaveOut) {
     const StereoSettings& settings = frame.plan.targets[index].warp->settings;
     const gpu::WarpCounters& warp = frame.state.targets[index].warp_counters;
-    const bool paper = settings.choice == TileChoice::kPaper, predicts = settings.choice == TileChoice::kPredicted;
-    leaveOut(predicts && warp.moves == 0, "reprojection: every tile is cheaper to render than to reproject, so nothing is lost");
-    leaveOut((paper || predicts) && frame.state.targets[index].chosen_tiles.count == 0, "patching: no tile needs to be rendered again");
+    const bool paper = settings.choice == TileChoice::kPaper,
+               predicts = settings.choice == TileChoice::kPredicted;
+    leaveOut(predicts && warp.moves == 0,
+             "reprojection: every tile is cheaper to render than to reproject, so nothing is lost");
+    leaveOut((paper || predicts) && frame.state.targets[index].chosen_tiles.count == 0,
+             "patching: no tile needs to be rendered again");
     leaveOut(paper && !settings.center_rois, "centre ROIs: not asked for");
     leaveOut(paper && settings.center_rois && warp.hole_pixels == 0, "centre ROIs: the picture has no holes");
     leaveOut(predicts && warp.moves != 0 && warp.newcomers == 0,
@@ -127,25 +138,31 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     const FramePlan& plan = frame.plan;
     const bool moments = std::ranges::any_of(plan.targets, [](const TargetPlan& target) {
         return target.kept.moments || target.kept.history ||
-               (target.warp &&
-                (target.warp->settings.choice == TileChoice::kPredicted || target.warp->settings.depth_choice == gpu::kDepthInverse));
+               (target.warp && (target.warp->settings.choice == TileChoice::kPredicted ||
+                                target.warp->settings.depth_choice == gpu::kDepthInverse));
     });
-    const bool two = plan.eyes == 2, both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
-    leaveOut(frame.scene.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", frame.scene.shDegree()));
+    const bool two = plan.eyes == 2,
+               both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
+    leaveOut(frame.scene.shDegree() < kMaxShDegree,
+             fmt::format("SH bands above {}: the scene has none", frame.scene.shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(two && !plan.targets[static_cast<std::size_t>(1 - plan.firstTarget() % 2)].kept.depth,
              "depth of the affiliated eye: nothing reads it");
     leaveOut(both_at_once, "culling for the affiliated eye alone: both eyes are culled at once");
-    leaveOut(both_at_once && plan.shares_order,
-             plan.lists[0].eyes.middle ? "depth sort of the affiliated eye: both eyes sort by the distance from the midpoint between them"
-                                       : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
+    leaveOut(both_at_once && plan.shares_order, plan.lists[0].eyes.middle
+                                                    ? "depth sort of the affiliated eye: both eyes sort by "
+                                                      "the distance from the midpoint between them"
+                                                    : "depth sort of the affiliated eye: the eyes are "
+                                                      "parallel, so the dominant eye's order is exact");
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const glm::uvec2 tiles = tilesOf(plan.targets[e].eye.size_px);
         const std::uint32_t hidden = plan.targets[e].tiles_hidden;
-        leaveOut(hidden > 0, fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", hidden,
-                                         std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
+        leaveOut(hidden > 0,
+                 fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", hidden,
+                             std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
     }
-    const bool two_full = two && plan.targets[0].coarse && !plan.targets[0].history && !plan.targets[1].history;
+    const bool two_full =
+        two && plan.targets[0].coarse && !plan.targets[0].history && !plan.targets[1].history;
     leaveOut(two_full, "reprojection: both eyes are rendered, coarsely where they do not see sharply");
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         if (plan.targets[t].warp) { explainWarp(frame, t, leaveOut); }
@@ -184,11 +201,13 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.tiles = std::uint64_t{tiles.x} * tiles.y;
         its.tiles_hidden = target.tiles_hidden;
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
-        its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
+        its.pixel_bytes =
+            picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
         if (target.warp) { countWarp(frame, t, result); }
         if (target.coarse) { countCoarse(state.counters, counters); }
     }
-    if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.history.has_value(); })) {
+    if (std::ranges::any_of(frame.plan.targets,
+                            [](const TargetPlan& target) { return target.history.has_value(); })) {
         countHistory(frame, result);
     }
     result.sees_nothing = seesNothing(counters);

@@ -26,13 +26,17 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : StereoFrame(context, scene, options, nullptr) {}
 
-StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, PassKernels* others)
+StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options,
+                         PassKernels* others)
     : context_(context),
-      own_kernels_(others == nullptr ? std::make_unique<PassKernels>(context, options.threads_per_cell) : nullptr),
+      own_kernels_(others == nullptr ? std::make_unique<PassKernels>(context, options.threads_per_cell)
+                                     : nullptr),
       kernels_(others == nullptr ? *own_kernels_ : *others),
       room_(context, options.first_capacity,
             [this] {
-                for (const Flight& flight : flights_) { static_cast<void>(flight.commands.isDone(UINT64_MAX)); }
+                for (const Flight& flight : flights_) {
+                    static_cast<void>(flight.commands.isDone(UINT64_MAX));
+                }
             }),
       flights_{Flight(context), Flight(context)} {
     show(scene);
@@ -88,7 +92,8 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     room_.forgetFrames();
 }
 
-FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append) {
+FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings,
+                                const Append& append) {
     finish();
     prepare(eyes, settings);
     renderUntilComplete(settings, append);
@@ -110,19 +115,20 @@ void StereoFrame::reserve(std::span<const Eye> eyes, const FrameSettings& settin
     histories_ = histories;
 }
 
-std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append,
-                                                    vk::Semaphore signals) {
+std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
+                                                    const Append& append, vk::Semaphore signals) {
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
     // Lists have capacity for patches while there is a history, and for whole pictures after it.
     const bool has_history = histories_.of_eyes[0] && settings.keep_history;
-    const bool was_warped = std::ranges::any_of(plan_.targets, [](const TargetPlan& target) { return target.history.has_value(); });
-    const bool loses_history =
-        has_history && (!historiesFor(eyes, settings).of_eyes[0] || (was_warped && changedShare(eyes, settings) > kMostChanged));
+    const bool was_warped = std::ranges::any_of(
+        plan_.targets, [](const TargetPlan& target) { return target.history.has_value(); });
+    const bool loses_history = has_history && (!historiesFor(eyes, settings).of_eyes[0] ||
+                                               (was_warped && changedShare(eyes, settings) > kMostChanged));
     const Likeness likeness = likenessToLast(eyes, settings);
     const bool jumps = loses_history || likeness == Likeness::kJumps;
-    bool waits =
-        room_.isFirstFrame() || likeness == Likeness::kOther || (jumps && settings.waits_after_jump) || FrameRoom::isCutShort(state_);
+    bool waits = room_.isFirstFrame() || likeness == Likeness::kOther ||
+                 (jumps && settings.waits_after_jump) || FrameRoom::isCutShort(state_);
     // Lists fill up gradually: they are made longer before they are full, while nothing uses them.
     const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
     if (waits || is_short) {
@@ -172,7 +178,9 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
         ++cut_short_;
         // A tile that did not fit keeps what was made from a history or another picture; a picture made from
         // neither has nothing else.
-        const auto isMade = [](const TargetPlan& target) { return target.history.has_value() || target.warp.has_value(); };
+        const auto isMade = [](const TargetPlan& target) {
+            return target.history.has_value() || target.warp.has_value();
+        };
         if (!std::ranges::all_of(flight.plan.targets, isMade)) { histories_ = {}; }
     }
     FrameResult result = take(flight);
@@ -185,7 +193,8 @@ FrameResult StereoFrame::take(const Flight& flight) {
         const gpu::WarpCounters& counters = state_.targets[static_cast<std::size_t>(*warped)].warp_counters;
         moving_pays_.learn(flight.asked, counters.pays != 0);
     }
-    return reportFrame({context_, *scene_, room_, flight.plan, state_, flight.commands}, flight.settings.mark);
+    return reportFrame({context_, *scene_, room_, flight.plan, state_, flight.commands},
+                       flight.settings.mark);
 }
 
 void StereoFrame::renderUntilComplete(const FrameSettings& settings, const Append& append) {
@@ -199,8 +208,9 @@ void StereoFrame::renderUntilComplete(const FrameSettings& settings, const Appen
 std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, const Append& append) {
     renderOnce(settings, append);
     const std::optional<int> warped = plan_.warpedTarget();
-    const bool guesses =
-        warped && plan_.targets[static_cast<std::size_t>(*warped)].choice != TileChoice::kNone && FrameRoom::isSourceVoid(plan_, state_);
+    const bool guesses = warped &&
+                         plan_.targets[static_cast<std::size_t>(*warped)].choice != TileChoice::kNone &&
+                         FrameRoom::isSourceVoid(plan_, state_);
     if (!room_.growIfItFits(plan_, state_)) {
         room_.haveFrame();
         return 0;
@@ -222,7 +232,8 @@ void StereoFrame::renderOnce(const FrameSettings& settings, const Append& append
 
 FrameState StereoFrame::stateAhead() const {
     FrameState ahead = state_;
-    const std::uint32_t more = scene_->splatsComing() > splats_known_ ? scene_->splatsComing() - splats_known_ : 0;
+    const std::uint32_t more =
+        scene_->splatsComing() > splats_known_ ? scene_->splatsComing() - splats_known_ : 0;
     if (more == 0) { return ahead; }
     std::uint64_t visible = 1;
     for (const ListPlan& list : plan_.lists) {
@@ -233,8 +244,10 @@ FrameState StereoFrame::stateAhead() const {
     // Each of them meets about as many tiles as the present ones, none of which may have been visible yet.
     constexpr std::uint64_t kLeastTiles = 2;
     for (std::size_t t = 0; t < plan_.targets.size(); ++t) {
-        const std::uint64_t pairs = state_.targets[t].pairs.needed, of_more = more * std::max(pairs / visible, kLeastTiles);
-        ahead.targets[t].pairs.needed = static_cast<std::uint32_t>(std::min<std::uint64_t>(pairs + of_more, gpu::kMaxItems));
+        const std::uint64_t pairs = state_.targets[t].pairs.needed,
+                            of_more = more * std::max(pairs / visible, kLeastTiles);
+        ahead.targets[t].pairs.needed =
+            static_cast<std::uint32_t>(std::min<std::uint64_t>(pairs + of_more, gpu::kMaxItems));
     }
     return ahead;
 }
@@ -264,18 +277,25 @@ Histories StereoFrame::historiesFor(std::span<const Eye> eyes, const FrameSettin
 double StereoFrame::changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const {
     if (settings.mode != Mode::kTemporal || eyes.size() != 2) { return 0.0; }
     std::vector<SceneChange> changes(scene_->changesNoted().begin(), scene_->changesNoted().end());
-    if (const auto recorded = scene_->changesSince(changes_known_)) { changes.insert(changes.end(), recorded->begin(), recorded->end()); }
-    return 0.5 * (binosplat::changedShare(changes, eyes[0], settings.near) + binosplat::changedShare(changes, eyes[1], settings.near));
+    if (const auto recorded = scene_->changesSince(changes_known_)) {
+        changes.insert(changes.end(), recorded->begin(), recorded->end());
+    }
+    return 0.5 * (binosplat::changedShare(changes, eyes[0], settings.near) +
+                  binosplat::changedShare(changes, eyes[1], settings.near));
 }
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
-    if (std::ranges::none_of(plan_.targets, [](const TargetPlan& target) { return target.history.has_value(); })) { return; }
+    if (std::ranges::none_of(plan_.targets,
+                             [](const TargetPlan& target) { return target.history.has_value(); })) {
+        return;
+    }
     // The memory that the history was made from is overwritten already.
     plan_ = planFrame(settings, eyes_, true);
     room_.fitPictures(plan_, settings.hidden_tiles);
 }
 
-StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes, const FrameSettings& settings) const {
+StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes,
+                                                  const FrameSettings& settings) const {
     if (shapeOf(eyes, settings) != shape_) { return Likeness::kOther; }
     bool jumps = binosplat::jumps(eyes_, eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
@@ -283,7 +303,8 @@ StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes, con
         if ((before > 0) != (now > 0)) { return Likeness::kOther; }
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
         // A view that turns over its picture shows another row and another column.
-        const double most = std::max(kMostHiddenDiffer * tiles.x * tiles.y, static_cast<double>(tiles.x + tiles.y));
+        const double most =
+            std::max(kMostHiddenDiffer * tiles.x * tiles.y, static_cast<double>(tiles.x + tiles.y));
         jumps = jumps || std::abs(now - before) > most;
     }
     return jumps ? Likeness::kJumps : Likeness::kAlike;
@@ -293,9 +314,11 @@ void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settin
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
     const bool may_move = moving_pays_.mayMove(asked);
     const double changed = changedShare(eyes, settings);
-    plan_ = planFrame(settings, eyes, may_move, changed > kMostChanged ? Histories() : historiesFor(eyes, settings));
+    plan_ = planFrame(settings, eyes, may_move,
+                      changed > kMostChanged ? Histories() : historiesFor(eyes, settings));
     if (changed <= kMostChanged) {
-        plan_.budget = std::min(std::max(plan_.budget, kMoreWhereChanged * changed + kBudgetBesideChanges * plan_.budget), 1.0);
+        plan_.budget = std::min(
+            std::max(plan_.budget, kMoreWhereChanged * changed + kBudgetBesideChanges * plan_.budget), 1.0);
     }
     room_.fitPictures(plan_, settings.hidden_tiles);
     room_.fitLists();

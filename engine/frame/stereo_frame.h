@@ -35,7 +35,8 @@ public:
     // see, it grows and the frame is done again: the result never comes from a truncated list. Throws Error
     // if the device lacks the memory. `append` records what becomes of the pictures, in the same submission;
     // it is called again if the frame is done again.
-    FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
+    FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings,
+                       const std::function<void(Commands&)>& append = {});
     // For showing frame after frame: returns once the frame is on its way to the device, and
     // waits only for the one before the last, whose result it returns (empty if there is
     // none). So the device draws one frame while the next is prepared. Lists have more
@@ -48,7 +49,8 @@ public:
     // What it needs is counted or, if that is not possible, guessed, so even then it is
     // seldom cut short. `signals`, if given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
-                                           const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
+                                           const std::function<void(Commands&)>& append = {},
+                                           vk::Semaphore signals = {});
     // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the last,
     // as renderAhead does.
     void passOver();
@@ -59,7 +61,8 @@ public:
     };
     // Does not wait: lists have more capacity than the last frame that came back needed, and a frame with
     // lists that are too short shows background. Each lent frame comes back once.
-    Lent lend(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
+    Lent lend(std::span<const Eye> eyes, const FrameSettings& settings,
+              const std::function<void(Commands&)>& append = {});
     // The device has finished it.
     FrameResult takeBack(std::uint64_t number);
     // Nobody will submit it.
@@ -110,15 +113,20 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for display.
-    [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture); }
+    [[nodiscard]] const Picture& picture(int eye) const {
+        return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture);
+    }
     // The buffers with the kinds of an eye's tiles in the last frame; null if it was rendered in full.
     [[nodiscard]] const WarpBuffers* chosenTiles(int eye) const;
     // For the target that is made from another; without memory if there is none.
-    [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
+    [[nodiscard]] const WarpBuffers& warpBuffers() const {
+        return room_.warp(plan_.warpedTarget().value_or(0));
+    }
 
 private:
     // Null: with kernels of its own.
-    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, PassKernels* others);
+    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options,
+                PassKernels* others);
 
     using Append = std::function<void(Commands&)>;
     // A frame on the device, and what must be remembered to interpret its report. Two take turns. They share
@@ -126,7 +134,8 @@ private:
     // before.
     struct Flight {
         explicit Flight(const Context& context, Commands::Level level = Commands::Level::kPrimary)
-            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context, level) {}
+            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
+              commands(context, level) {}
 
         Buffer readback;
         Commands commands;  // last, after the buffer that it writes: it waits before that is freed
@@ -139,7 +148,8 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: the recording is dropped, and must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_), brings_changes_};
+        return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_),
+                brings_changes_};
     }
     // The histories that earlier frames leave to such a frame.
     [[nodiscard]] Histories historiesFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -175,7 +185,8 @@ private:
     };
     [[nodiscard]] Likeness likenessToLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
     template <typename T>
-    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t most_bytes = UINT64_MAX, std::uint64_t from_byte = 0);
+    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t most_bytes = UINT64_MAX,
+                                            std::uint64_t from_byte = 0);
 
     const Context& context_;
     const GpuScene* scene_ = nullptr;

@@ -10,12 +10,13 @@ namespace binosplat {
 namespace {
 
 // From the first of these types whose heap has that much left.
-vk::raii::DeviceMemory allocate(const Context& context, const vk::MemoryRequirements& needs, const std::vector<std::uint32_t>& types,
-                                bool has_address) {
+vk::raii::DeviceMemory allocate(const Context& context, const vk::MemoryRequirements& needs,
+                                const std::vector<std::uint32_t>& types, bool has_address) {
     const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
     for (std::size_t i = 0;; ++i) {
         try {
-            return {context.device(), vk::MemoryAllocateInfo(needs.size, types[i], has_address ? &flags : nullptr)};
+            return {context.device(),
+                    vk::MemoryAllocateInfo(needs.size, types[i], has_address ? &flags : nullptr)};
         } catch (const vk::OutOfDeviceMemoryError&) {
             if (i + 1 == types.size()) { throw; }
         }
@@ -30,29 +31,38 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     using Property = vk::MemoryPropertyFlagBits;
     const vk::Device device = *context.device();
     const auto mebibytes = [](std::uint64_t count) { return static_cast<double>(count) / 1048576.0; };
-    const std::string what = fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, mebibytes(bytes));
-    const auto refuse = [](const std::string& message) { throw DeviceError(DeviceError::Kind::kMemory, message); };
+    const std::string what =
+        fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, mebibytes(bytes));
+    const auto refuse = [](const std::string& message) {
+        throw DeviceError(DeviceError::Kind::kMemory, message);
+    };
     const std::uint64_t most_bytes = context.maxAllocationBytes();
-    if (bytes > most_bytes) { refuse(fmt::format("{}, one allocation holds at most {:.1f} MiB", what, mebibytes(most_bytes))); }
-    const std::uint64_t used_bytes = context.memoryUse().current_bytes, limit_bytes = context.memoryLimitBytes();
+    if (bytes > most_bytes) {
+        refuse(fmt::format("{}, one allocation holds at most {:.1f} MiB", what, mebibytes(most_bytes)));
+    }
+    const std::uint64_t used_bytes = context.memoryUse().current_bytes,
+                        limit_bytes = context.memoryLimitBytes();
     const bool fits = kind != MemoryKind::kDevice || limit_bytes == 0 || used_bytes + bytes <= limit_bytes;
     if (!fits) {
-        refuse(fmt::format("{} in addition to {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)", what, mebibytes(used_bytes),
-                           mebibytes(limit_bytes)));
+        refuse(fmt::format("{} in addition to {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)",
+                           what, mebibytes(used_bytes), mebibytes(limit_bytes)));
     }
     try {
-        const auto usage =
-            Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+        const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
+                           Usage::eTransferSrc | Usage::eTransferDst;
         buffer_ = vk::raii::Buffer(
             context.device(),
-            vk::BufferCreateInfo({}, bytes, kind == MemoryKind::kDevice ? usage : Usage::eTransferSrc | Usage::eTransferDst));
+            vk::BufferCreateInfo(
+                {}, bytes, kind == MemoryKind::kDevice ? usage : Usage::eTransferSrc | Usage::eTransferDst));
         const auto needs = buffer_.getMemoryRequirements();
         const bool is_mapped = kind != MemoryKind::kDevice;
-        const vk::MemoryPropertyFlags wanted = is_mapped ? Property::eHostVisible | Property::eHostCoherent : vk::MemoryPropertyFlags();
+        const vk::MemoryPropertyFlags wanted =
+            is_mapped ? Property::eHostVisible | Property::eHostCoherent : vk::MemoryPropertyFlags();
         const vk::MemoryPropertyFlags preferred = kind == MemoryKind::kDevice     ? Property::eDeviceLocal
                                                   : kind == MemoryKind::kReadback ? Property::eHostCached
                                                                                   : vk::MemoryPropertyFlags();
-        memory_ = allocate(context, needs, context.memoryTypes(needs.memoryTypeBits, wanted, preferred), !is_mapped);
+        memory_ = allocate(context, needs, context.memoryTypes(needs.memoryTypeBits, wanted, preferred),
+                           !is_mapped);
         buffer_.bindMemory(*memory_, 0);
         if (kind == MemoryKind::kDevice) { counted_bytes_ = needs.size; }
     } catch (const vk::OutOfDeviceMemoryError&) {
@@ -62,10 +72,12 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     context_ = &context;
     bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {
-        address_ = device.getBufferAddress(vk::BufferDeviceAddressInfo(*buffer_), *context.device().getDispatcher());
+        address_ =
+            device.getBufferAddress(vk::BufferDeviceAddressInfo(*buffer_), *context.device().getDispatcher());
         MemoryUse& use = context.memoryUse();
         const std::uint64_t now = use.current_bytes += counted_bytes_;
-        for (std::uint64_t peak = use.peak_bytes; peak < now && !use.peak_bytes.compare_exchange_weak(peak, now);) {}
+        for (std::uint64_t peak = use.peak_bytes;
+             peak < now && !use.peak_bytes.compare_exchange_weak(peak, now);) {}
     } else {
         mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     }
@@ -84,7 +96,9 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 }
 
 void Buffer::release() {
-    if (context_ != nullptr) { context_->freedBuffers().take({std::move(memory_), std::move(buffer_), counted_bytes_}); }
+    if (context_ != nullptr) {
+        context_->freedBuffers().take({std::move(memory_), std::move(buffer_), counted_bytes_});
+    }
     context_ = nullptr;
     buffer_ = vk::raii::Buffer(nullptr);
     memory_ = vk::raii::DeviceMemory(nullptr);

@@ -22,7 +22,8 @@ class Buffer {
 public:
     Buffer() = default;
     // Throws Error if the device lacks that much memory; the message calls it `name`.
-    Buffer(const Context& context, const std::string& name, std::uint64_t bytes, MemoryKind kind = MemoryKind::kDevice);
+    Buffer(const Context& context, const std::string& name, std::uint64_t bytes,
+           MemoryKind kind = MemoryKind::kDevice);
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
     Buffer& operator=(Buffer&& other) noexcept;
     ~Buffer() { release(); }

@@ -21,14 +21,17 @@ std::string PassLabel::text() const {
 
 Commands::Commands(const Context& context, Level level) : context_(context), level_(level) {
     const bool is_whole = level == Level::kPrimary;
-    pool_ = context.device().createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, context.queueFamily()});
+    pool_ = context.device().createCommandPool(
+        {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, context.queueFamily()});
     vk::raii::CommandBuffers buffers(
         context.device(),
-        vk::CommandBufferAllocateInfo(*pool_, is_whole ? vk::CommandBufferLevel::ePrimary : vk::CommandBufferLevel::eSecondary, 1));
+        vk::CommandBufferAllocateInfo(
+            *pool_, is_whole ? vk::CommandBufferLevel::ePrimary : vk::CommandBufferLevel::eSecondary, 1));
     command_buffer_ = std::move(buffers[0]);
     fence_ = context.device().createFence({});
     if (context.timestampPeriodNs() > 0.0) {
-        timestamps_ = context.device().createQueryPool(vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMaxTimestamps));
+        timestamps_ = context.device().createQueryPool(
+            vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMaxTimestamps));
     }
 }
 
@@ -36,8 +39,8 @@ Commands::~Commands() {
     if (!under_way_ || level_ == Level::kSecondary) { return; }
     // A lost device has nothing left to finish.
     const vk::Fence fence = *fence_;
-    (void)context_.device().getDispatcher()->vkWaitForFences(*context_.device(), 1, reinterpret_cast<const VkFence*>(&fence), VK_TRUE,
-                                                             UINT64_MAX);
+    (void)context_.device().getDispatcher()->vkWaitForFences(
+        *context_.device(), 1, reinterpret_cast<const VkFence*>(&fence), VK_TRUE, UINT64_MAX);
 }
 
 void Commands::begin(bool times_passes) {
@@ -49,20 +52,26 @@ void Commands::begin(bool times_passes) {
     count_ = 0;
     command_buffer_.reset();
     const vk::CommandBufferInheritanceInfo outside_of_render_passes;
-    command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit, &outside_of_render_passes));
+    command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit,
+                                                     &outside_of_render_passes));
     if (*timestamps_) { command_buffer_.resetQueryPool(*timestamps_, 0, kMaxTimestamps); }
 }
 
 void Commands::writeTimestamp(bool is_end_of_frame) {
     if (!times_passes_ && timestamp_count_ > 0 && !is_end_of_frame) { return; }
     assert(timestamp_count_ < kMaxTimestamps);
-    if (*timestamps_) { command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, timestamp_count_); }
+    if (*timestamps_) {
+        command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_,
+                                       timestamp_count_);
+    }
     ++timestamp_count_;
 }
 
 void Commands::beginPass(const PassLabel& label) {
     endPass();
-    if (context_.hasLabels()) { command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(label.text().c_str())); }
+    if (context_.hasLabels()) {
+        command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(label.text().c_str()));
+    }
     passes_.push_back(label);
     writeTimestamp();
     in_pass_ = true;
@@ -80,11 +89,12 @@ void Commands::waitForAll() {
     if (std::exchange(beside_, false)) { return; }
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
-    const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead | Access::eShaderWrite |
-                                                                                       Access::eTransferRead | Access::eTransferWrite |
-                                                                                       Access::eIndirectCommandRead);
+    const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite,
+                                    Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
+                                        Access::eTransferWrite | Access::eIndirectCommandRead);
     command_buffer_.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer,
-                                    Stage::eComputeShader | Stage::eTransfer | Stage::eDrawIndirect, {}, barrier, {}, {});
+                                    Stage::eComputeShader | Stage::eTransfer | Stage::eDrawIndirect, {},
+                                    barrier, {}, {});
 }
 
 void Commands::recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes) {
@@ -108,11 +118,13 @@ void Commands::update(const Buffer& buffer, const void* data, std::uint64_t byte
     for (std::uint64_t from = 0; from < bytes; from += kMostBytes) {
         command_buffer_.updateBuffer<std::uint8_t>(
             buffer.handle(), to_offset + from,
-            {static_cast<std::uint32_t>(std::min(bytes - from, kMostBytes)), static_cast<const std::uint8_t*>(data) + from});
+            {static_cast<std::uint32_t>(std::min(bytes - from, kMostBytes)),
+             static_cast<const std::uint8_t*>(data) + from});
     }
 }
 
-void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset, std::uint64_t to_offset) {
+void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset,
+                    std::uint64_t to_offset) {
     if (bytes == 0) { return; }
     waitForAll();
     command_buffer_.copyBuffer(from.handle(), to.handle(), vk::BufferCopy(from_offset, to_offset, bytes));
@@ -121,7 +133,8 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, s
 void Commands::copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts) {
     if (parts.empty()) { return; }
     waitForAll();
-    command_buffer_.copyBuffer(from.handle(), to.handle(), vk::ArrayProxy(static_cast<std::uint32_t>(parts.size()), parts.data()));
+    command_buffer_.copyBuffer(from.handle(), to.handle(),
+                               vk::ArrayProxy(static_cast<std::uint32_t>(parts.size()), parts.data()));
 }
 
 const Buffer& Commands::staging(std::uint64_t bytes) {
@@ -130,30 +143,37 @@ const Buffer& Commands::staging(std::uint64_t bytes) {
     if (staging_.bytes() < bytes) {
         staging_ = {};
         constexpr std::uint64_t kStep = 1 << 20;  // large, so that it seldom grows
-        const std::uint64_t rounded = std::min((bytes + kStep - 1) / kStep * kStep, std::max(bytes, context_.maxAllocationBytes()));
+        const std::uint64_t rounded =
+            std::min((bytes + kStep - 1) / kStep * kStep, std::max(bytes, context_.maxAllocationBytes()));
         staging_ = Buffer(context_, "staging", rounded, MemoryKind::kUpload);
     }
     return staging_;
 }
 
-void Commands::changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to) {
+void Commands::changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from,
+                            vk::ImageLayout to) {
     using Access = vk::AccessFlagBits;
     const bool enters = to == vk::ImageLayout::eTransferDstOptimal;
     const auto all = Access::eMemoryRead | Access::eMemoryWrite;
-    const vk::ImageMemoryBarrier barrier(enters ? vk::AccessFlags(all) : Access::eTransferWrite, enters ? Access::eTransferWrite : all,
-                                         from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image, {aspect, 0, 1, 0, 1});
-    const auto outside = vk::PipelineStageFlagBits::eAllCommands, inside = vk::PipelineStageFlagBits::eTransfer;
-    command_buffer_.pipelineBarrier(enters ? outside : inside, enters ? inside : outside, {}, {}, {}, barrier);
+    const vk::ImageMemoryBarrier barrier(
+        enters ? vk::AccessFlags(all) : Access::eTransferWrite, enters ? Access::eTransferWrite : all, from,
+        to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image, {aspect, 0, 1, 0, 1});
+    const auto outside = vk::PipelineStageFlagBits::eAllCommands,
+               inside = vk::PipelineStageFlagBits::eTransfer;
+    command_buffer_.pipelineBarrier(enters ? outside : inside, enters ? inside : outside, {}, {}, {},
+                                    barrier);
 }
 
-void Commands::copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect) {
+void Commands::copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px,
+                           vk::ImageAspectFlagBits aspect) {
     using Layout = vk::ImageLayout;
     waitForAll();
     changeLayout(image, aspect, Layout::eUndefined, Layout::eTransferDstOptimal);
     const vk::BufferImageCopy region(0, 0, 0, {aspect, 0, 0, 1}, {}, {size_px.x, size_px.y, 1});
     command_buffer_.copyBufferToImage(from.handle(), image, Layout::eTransferDstOptimal, region);
     changeLayout(image, aspect, Layout::eTransferDstOptimal,
-                 aspect == vk::ImageAspectFlagBits::eDepth ? Layout::eDepthStencilAttachmentOptimal : Layout::eColorAttachmentOptimal);
+                 aspect == vk::ImageAspectFlagBits::eDepth ? Layout::eDepthStencilAttachmentOptimal
+                                                           : Layout::eColorAttachmentOptimal);
 }
 
 void Commands::drop() {
@@ -166,7 +186,8 @@ void Commands::end() {
     endPass();
     if (!times_passes_ && timestamp_count_ > 0) { writeTimestamp(true); }
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
-    command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {}, {});
+    command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost,
+                                    {}, to_host, {}, {});
     command_buffer_.end();
 }
 
@@ -205,15 +226,17 @@ void Commands::wait() {
     total_ms_ = 0.0;
     if (!*timestamps_ || timestamp_count_ == 0) { return; }
     using Flag = vk::QueryResultFlagBits;
-    const auto [status, ticks] =
-        timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                              level_ == Level::kPrimary ? Flag::e64 | Flag::eWait : Flag::e64);
+    const auto [status, ticks] = timestamps_.getResults<std::uint64_t>(
+        0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+        level_ == Level::kPrimary ? Flag::e64 | Flag::eWait : Flag::e64);
     if (status == vk::Result::eNotReady) { return; }  // the caller said too early that it was done
-    check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
+    check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(),
+          vk::to_string(status));
     const std::uint64_t mask = context_.timestampMask();
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;
     for (std::size_t i = 0; times_passes_ && i < passes_.size(); ++i) {
-        times_.push_back({passes_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick});
+        times_.push_back(
+            {passes_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick});
     }
     total_ms_ = static_cast<double>((ticks.back() - ticks.front()) & mask) * ms_per_tick;
 }

@@ -56,13 +56,15 @@ public:
     // then neither may write what the other touches.
     void beside() { beside_ = true; }
     template <typename Pass>
-    void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1, std::uint32_t groups_z = 1) {
+    void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1,
+                  std::uint32_t groups_z = 1) {
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatch(groups_x, groups_y, groups_z);
     }
     // As many workgroups as the size at `offset_bytes` in `sizes` says.
     template <typename Pass>
-    void dispatchIndirect(const Kernel& kernel, const Pass& pass, const Buffer& sizes, std::uint64_t offset_bytes) {
+    void dispatchIndirect(const Kernel& kernel, const Pass& pass, const Buffer& sizes,
+                          std::uint64_t offset_bytes) {
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatchIndirect(sizes.handle(), offset_bytes);
     }
@@ -73,7 +75,8 @@ public:
     }
     // One workgroup for every `group_items` of `items`, folded into rows (see groupIndex in the shaders).
     template <typename Pass>
-    void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items, gpu::uint group_items = gpu::kGroupSize) {
+    void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items,
+                      gpu::uint group_items = gpu::kGroupSize) {
         const auto groups = static_cast<std::uint32_t>((items + group_items - 1) / group_items);
         if (groups == 0) { return; }
         const vk::Extent2D rows = rowsOf(groups);
@@ -82,7 +85,8 @@ public:
     void fillZero(const Buffer& buffer);
     // A few bytes, carried by the command buffer itself.
     void update(const Buffer& buffer, const void* data, std::uint64_t bytes, std::uint64_t to_offset = 0);
-    void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
+    void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0,
+              std::uint64_t to_offset = 0);
     // The same for several parts, none of which may overlap.
     void copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts);
     // Memory from which copies of this recording read, at least this many bytes: the host may write to it
@@ -129,7 +133,8 @@ private:
     // Called before each of them.
     void waitForAll();
     void end();
-    void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to);
+    void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from,
+                      vk::ImageLayout to);
     // Unless only the first and the last are wanted.
     void writeTimestamp(bool is_end_of_frame = false);
 

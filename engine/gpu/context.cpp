@@ -16,10 +16,12 @@ namespace {
 constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_2;
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
-VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                         VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     // NVIDIA's driver queries a function of the instance in this way, too: the program cannot prevent it.
-    if (data->pMessageIdName != nullptr && std::strcmp(data->pMessageIdName, "WARNING-vkGetDeviceProcAddr-device") == 0) {
+    if (data->pMessageIdName != nullptr &&
+        std::strcmp(data->pMessageIdName, "WARNING-vkGetDeviceProcAddr-device") == 0) {
         return VK_FALSE;
     }
     const auto& sink = *static_cast<std::function<void(const char*)>*>(user);
@@ -46,28 +48,37 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     if (!queueFamilyOf(device)) { return "a compute queue"; }
     // Vulkan's guaranteed limits.
     const auto limits = device.getProperties().limits;
-    if (limits.maxComputeWorkGroupInvocations < 128 || limits.maxComputeWorkGroupSize[0] < 128) { return "workgroups of 128 invocations"; }
+    if (limits.maxComputeWorkGroupInvocations < 128 || limits.maxComputeWorkGroupSize[0] < 128) {
+        return "workgroups of 128 invocations";
+    }
     if (limits.maxComputeSharedMemorySize < 16384) { return "16 KiB of shared memory"; }
-    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    const auto features =
+        device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     if (!vulkan12.bufferDeviceAddress) { return "bufferDeviceAddress"; }
     if (!vulkan12.scalarBlockLayout) { return "scalarBlockLayout"; }
-    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+    const auto properties =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
-    const auto operations =
-        vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
-    if ((vulkan11.subgroupSupportedOperations & operations) != operations) { return "subgroup arithmetic, ballot and shuffle"; }
+    const auto operations = vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot |
+                            vk::SubgroupFeatureFlagBits::eShuffle;
+    if ((vulkan11.subgroupSupportedOperations & operations) != operations) {
+        return "subgroup arithmetic, ballot and shuffle";
+    }
     std::uint32_t least_lanes = vulkan11.subgroupSize;
     if (device.getProperties().apiVersion >= VK_API_VERSION_1_3) {
-        const auto sizes = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
-        least_lanes = std::min(least_lanes, sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize);
+        const auto sizes = device.getProperties2<vk::PhysicalDeviceProperties2,
+                                                 vk::PhysicalDeviceSubgroupSizeControlProperties>();
+        least_lanes = std::min(least_lanes,
+                               sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize);
     }
     if (least_lanes < 4 || vulkan11.subgroupSize > 128) { return "subgroups of 4 to 128 invocations"; }
     return {};
 }
 
 bool offersExtension(const std::vector<vk::ExtensionProperties>& offered, const char* name) {
-    return std::ranges::any_of(offered, [&](const auto& extension) { return std::strcmp(extension.extensionName, name) == 0; });
+    return std::ranges::any_of(
+        offered, [&](const auto& extension) { return std::strcmp(extension.extensionName, name) == 0; });
 }
 
 int preferenceOf(vk::PhysicalDeviceType type) {
@@ -90,7 +101,8 @@ Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.me
         loader_.emplace();
     } catch (const std::exception& error) {
         throw Error(ExitCode::kNoDevice,
-                    fmt::format("no Vulkan loader (libvulkan.so.1): {}; install libvulkan1 and a driver", error.what()));
+                    fmt::format("no Vulkan loader (libvulkan.so.1): {}; install libvulkan1 and a driver",
+                                error.what()));
     }
     try {
         if (options.foreign != nullptr) {
@@ -105,9 +117,12 @@ Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.me
             createDevice(options);
         }
     } catch (const vk::SystemError& error) {
-        throw Error(ExitCode::kNoDevice, fmt::format("no usable Vulkan device: {}; {}", error.what(), kVulkanHint));
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("no usable Vulkan device: {}; {}", error.what(), kVulkanHint));
     }
-    if (options.max_allocation_bytes != 0) { max_allocation_bytes_ = std::min(max_allocation_bytes_, options.max_allocation_bytes); }
+    if (options.max_allocation_bytes != 0) {
+        max_allocation_bytes_ = std::min(max_allocation_bytes_, options.max_allocation_bytes);
+    }
 }
 
 Context::~Context() {
@@ -118,7 +133,9 @@ Context::~Context() {
     queue_ = vk::raii::Queue(nullptr);
     device_ = vk::raii::Device(nullptr);
     const std::vector<std::string> messages = validationMessages();
-    for (std::size_t i = before; i < messages.size(); ++i) { fmt::print(stderr, "Vulkan validation at the end: {}\n", messages[i]); }
+    for (std::size_t i = before; i < messages.size(); ++i) {
+        fmt::print(stderr, "Vulkan validation at the end: {}\n", messages[i]);
+    }
 }
 
 void Context::createInstance(const ContextOptions& options, bool validation) {
@@ -126,25 +143,32 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
     std::vector<const char*> layers, extensions = options.instance_extensions;
     if (validation) {
         const auto available = loader_->enumerateInstanceLayerProperties();
-        const bool found = std::any_of(available.begin(), available.end(),
-                                       [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
-        check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
+        const bool found = std::any_of(available.begin(), available.end(), [](const auto& layer) {
+            return std::strcmp(layer.layerName, kValidationLayer) == 0;
+        });
+        check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)",
+              kValidationLayer);
         layers.push_back(kValidationLayer);
     }
     // Newer layers no longer have it: there a settings file or the environment selects the checks.
-    const bool chooses_checks = validation && offersExtension(loader_->enumerateInstanceExtensionProperties(std::string(kValidationLayer)),
-                                                              VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+    const bool chooses_checks =
+        validation &&
+        offersExtension(loader_->enumerateInstanceExtensionProperties(std::string(kValidationLayer)),
+                        VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     if (chooses_checks) { extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME); }
     // The validation layer provides it, too, if no driver does.
-    labels_ = validation || offersExtension(loader_->enumerateInstanceExtensionProperties(), VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    labels_ = validation || offersExtension(loader_->enumerateInstanceExtensionProperties(),
+                                            VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (labels_) { extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME); }
-    const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+    const vk::ValidationFeatureEnableEXT synchronization =
+        vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT validation_features(synchronization);
     vk::InstanceCreateInfo info({}, &application, layers, extensions);
     if (chooses_checks) { info.pNext = &validation_features; }
     const DeviceMaker& maker = options.maker;
     instance_ = maker.create_instance
-                    ? vk::raii::Instance(*loader_, maker.create_instance(loader_->getDispatcher()->vkGetInstanceProcAddr, info))
+                    ? vk::raii::Instance(*loader_, maker.create_instance(
+                                                       loader_->getDispatcher()->vkGetInstanceProcAddr, info))
                     : vk::raii::Instance(*loader_, info);
     validates_ = validation;
     if (validation) {
@@ -155,8 +179,9 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
         using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
         using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
         messenger_ = vk::raii::DebugUtilsMessengerEXT(
-            instance_, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
-                                                            Type::eValidation | Type::ePerformance, onMessage, &sink_));
+            instance_,
+            vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
+                                                 Type::eValidation | Type::ePerformance, onMessage, &sink_));
     }
 }
 
@@ -169,15 +194,25 @@ void Context::choosePhysicalDevice(const std::string& wanted) {
     std::optional<std::size_t> chosen;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const std::string name = devices[i].getProperties().deviceName, missing = missingFeatures(devices[i]);
-        const auto preference = [&](std::size_t device) { return preferenceOf(devices[device].getProperties().deviceType); };
-        seen += fmt::format("{}{}: {}{}", i == 0 ? "" : ", ", i, name, missing.empty() ? "" : " (lacks " + missing + ")");
-        const bool is_wanted = is_index ? std::to_string(i) == wanted : name.find(wanted) != std::string::npos;
-        const bool will_do = wanted.empty() ? missing.empty() && (!chosen || preference(i) < preference(*chosen)) : is_wanted && !chosen;
+        const auto preference = [&](std::size_t device) {
+            return preferenceOf(devices[device].getProperties().deviceType);
+        };
+        seen += fmt::format("{}{}: {}{}", i == 0 ? "" : ", ", i, name,
+                            missing.empty() ? "" : " (lacks " + missing + ")");
+        const bool is_wanted =
+            is_index ? std::to_string(i) == wanted : name.find(wanted) != std::string::npos;
+        const bool will_do = wanted.empty()
+                                 ? missing.empty() && (!chosen || preference(i) < preference(*chosen))
+                                 : is_wanted && !chosen;
         if (will_do) { chosen = i; }
     }
-    if (!chosen && wanted.empty()) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kVulkanHint)); }
+    if (!chosen && wanted.empty()) {
+        refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kVulkanHint));
+    }
     if (!chosen) { refuse(fmt::format("--device {}: no such Vulkan device; there is {}", wanted, seen)); }
-    if (!missingFeatures(devices[*chosen]).empty()) { refuse(fmt::format("--device {}: not usable; there is {}", wanted, seen)); }
+    if (!missingFeatures(devices[*chosen]).empty()) {
+        refuse(fmt::format("--device {}: not usable; there is {}", wanted, seen));
+    }
     physical_device_ = std::move(devices[*chosen]);
 }
 
@@ -232,25 +267,30 @@ void Context::createDevice(const ContextOptions& options) {
     kernel_statistics_ = statistics.pipelineExecutableInfo == VK_TRUE;
     const vk::DeviceCreateInfo info({}, queue_info, {}, extensions, nullptr, features);
     const DeviceMaker& maker = options.maker;
-    device_ = maker.create_device ? vk::raii::Device(physical_device_, maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,
-                                                                                           *physical_device_, info))
-                                  : vk::raii::Device(physical_device_, info);
+    device_ = maker.create_device
+                  ? vk::raii::Device(physical_device_,
+                                     maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,
+                                                         *physical_device_, info))
+                  : vk::raii::Device(physical_device_, info);
     queue_ = device_.getQueue(queue_family_, 0);
     pipeline_cache_ = PipelineCache(physical_device_, device_);
     readLimits();
 }
 
 void Context::readLimits() {
-    const auto properties = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+    const auto properties =
+        physical_device_
+            .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     const auto& vulkan10 = properties.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
     device_name_ = std::string(vulkan10.deviceName.data());
     is_software_ = vulkan10.deviceType == vk::PhysicalDeviceType::eCpu;
     max_allocation_bytes_ = vulkan11.maxMemoryAllocationSize;
     subgroup_size_ = min_subgroup_size_ = max_subgroup_size_ = vulkan11.subgroupSize;
-    if (vulkan10.apiVersion >= VK_API_VERSION_1_3 || hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME)) {
-        const auto sizes =
-            physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
+    if (vulkan10.apiVersion >= VK_API_VERSION_1_3 ||
+        hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME)) {
+        const auto sizes = physical_device_.getProperties2<vk::PhysicalDeviceProperties2,
+                                                           vk::PhysicalDeviceSubgroupSizeControlProperties>();
         min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
         max_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().maxSubgroupSize;
     } else {  // some drivers vary the size between 8 and 32 without reporting it
@@ -258,32 +298,39 @@ void Context::readLimits() {
         max_subgroup_size_ = std::max(32u, subgroup_size_);
     }
     if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {
-        const auto buffers = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance4Properties>();
-        max_allocation_bytes_ = std::min(max_allocation_bytes_, buffers.get<vk::PhysicalDeviceMaintenance4Properties>().maxBufferSize);
+        const auto buffers =
+            physical_device_
+                .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance4Properties>();
+        max_allocation_bytes_ = std::min(
+            max_allocation_bytes_, buffers.get<vk::PhysicalDeviceMaintenance4Properties>().maxBufferSize);
     }
     const std::uint32_t bits = physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits;
     shared_memory_ = vulkan10.limits.maxComputeSharedMemorySize;
-    max_group_invocations_ = std::min(vulkan10.limits.maxComputeWorkGroupInvocations, vulkan10.limits.maxComputeWorkGroupSize[0]);
+    max_group_invocations_ =
+        std::min(vulkan10.limits.maxComputeWorkGroupInvocations, vulkan10.limits.maxComputeWorkGroupSize[0]);
     timestamp_mask_ = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
     if (bits > 0) { timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod); }
 }
 
 std::span<const std::uint32_t> Context::shaderWords(std::string_view name) const {
     const auto found = replaced_shaders_.find(name);
-    return found == replaced_shaders_.end() ? embeddedShader(name) : std::span<const std::uint32_t>(found->second);
+    return found == replaced_shaders_.end() ? embeddedShader(name)
+                                            : std::span<const std::uint32_t>(found->second);
 }
 
 vk::PipelineShaderStageCreateFlags Context::fullSubgroups(std::uint32_t local_size_x) const {
     using Flag = vk::PipelineShaderStageCreateFlagBits;
     if (!has_full_subgroups_ || local_size_x % max_subgroup_size_ != 0) { return {}; }
     // Of any width: otherwise some devices choose their widest, which is their slowest.
-    return min_subgroup_size_ == max_subgroup_size_ ? Flag::eRequireFullSubgroups
-                                                    : Flag::eRequireFullSubgroups | Flag::eAllowVaryingSubgroupSize;
+    return min_subgroup_size_ == max_subgroup_size_
+               ? Flag::eRequireFullSubgroups
+               : Flag::eRequireFullSubgroups | Flag::eAllowVaryingSubgroupSize;
 }
 
 void Context::requireNoValidationMessages() const {
     const std::vector<std::string> messages = validationMessages();
-    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
+    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(),
+          messages.empty() ? "" : messages.front());
 }
 
 std::vector<std::string> Context::validationMessages() const {
@@ -295,7 +342,8 @@ std::uint64_t Context::deviceMemoryBytes() const {
     const vk::PhysicalDeviceMemoryProperties memory = physical_device_.getMemoryProperties();
     std::uint64_t most = 0;
     for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
-        const bool is_local = static_cast<bool>(memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal);
+        const bool is_local =
+            static_cast<bool>(memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal);
         if (is_local) { most = std::max<std::uint64_t>(most, memory.memoryHeaps[i].size); }
     }
     return most;
@@ -312,12 +360,14 @@ std::vector<std::uint32_t> Context::memoryTypes(std::uint32_t allowed_types, vk:
     for (const bool is_preferred : {true, false}) {
         for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
             const auto flags = memory.memoryTypes[i].propertyFlags;
-            const bool will_do = (allowed_types & (1u << i)) != 0 && (flags & wanted) == wanted && !(flags & kSpecial);
+            const bool will_do =
+                (allowed_types & (1u << i)) != 0 && (flags & wanted) == wanted && !(flags & kSpecial);
             if (will_do && ((flags & preferred) == preferred) == is_preferred) { found.push_back(i); }
         }
     }
     if (found.empty()) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: no memory of the kind {}", device_name_, vk::to_string(wanted)));
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{}: no memory of the kind {}", device_name_, vk::to_string(wanted)));
     }
     return found;
 }

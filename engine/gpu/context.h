@@ -24,7 +24,8 @@ namespace binosplat {
 struct DeviceMaker {
     std::function<VkInstance(PFN_vkGetInstanceProcAddr, const VkInstanceCreateInfo&)> create_instance;
     std::function<VkPhysicalDevice(VkInstance)> choose_device;
-    std::function<VkDevice(PFN_vkGetInstanceProcAddr, VkPhysicalDevice, const VkDeviceCreateInfo&)> create_device;
+    std::function<VkDevice(PFN_vkGetInstanceProcAddr, VkPhysicalDevice, const VkDeviceCreateInfo&)>
+        create_device;
 };
 
 struct ContextOptions {
@@ -108,7 +109,8 @@ public:
     [[nodiscard]] FreedBuffers& freedBuffers() const { return freed_buffers_; }
     // The suitable types among those allowed for a buffer or an image, preferred ones first. Throws Error if
     // there are none.
-    [[nodiscard]] std::vector<std::uint32_t> memoryTypes(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
+    [[nodiscard]] std::vector<std::uint32_t> memoryTypes(std::uint32_t allowed_types,
+                                                         vk::MemoryPropertyFlags wanted,
                                                          vk::MemoryPropertyFlags preferred) const;
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                            vk::MemoryPropertyFlags preferred) const {
@@ -116,7 +118,9 @@ public:
     }
 
     // True if a device extension was requested and is available.
-    [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const { return device_extensions_.contains(extension); }
+    [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const {
+        return device_extensions_.contains(extension);
+    }
 
     // True if the driver reports statistics of kernels; only if VK_KHR_pipeline_executable_properties was
     // requested.
@@ -127,7 +131,8 @@ public:
     void name(const Handle& handle, const std::string& object_name) const {
         if (!labels_) { return; }
         using Raw = std::remove_cvref_t<decltype(*handle)>;
-        nameObject(Raw::objectType, reinterpret_cast<std::uint64_t>(static_cast<typename Raw::CType>(*handle)), object_name);
+        nameObject(Raw::objectType,
+                   reinterpret_cast<std::uint64_t>(static_cast<typename Raw::CType>(*handle)), object_name);
     }
 
 private:

@@ -24,16 +24,20 @@ Enabled enabledIn(const void* chain) {
             enabled.addresses = enabled.addresses || features.bufferDeviceAddress != 0;
             enabled.scalar_layout = enabled.scalar_layout || features.scalarBlockLayout != 0;
         } else if (at->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES) {
-            enabled.addresses = reinterpret_cast<const VkPhysicalDeviceBufferDeviceAddressFeatures*>(at)->bufferDeviceAddress != 0;
+            enabled.addresses = reinterpret_cast<const VkPhysicalDeviceBufferDeviceAddressFeatures*>(at)
+                                    ->bufferDeviceAddress != 0;
         } else if (at->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES) {
-            enabled.scalar_layout = reinterpret_cast<const VkPhysicalDeviceScalarBlockLayoutFeatures*>(at)->scalarBlockLayout != 0;
+            enabled.scalar_layout =
+                reinterpret_cast<const VkPhysicalDeviceScalarBlockLayoutFeatures*>(at)->scalarBlockLayout !=
+                0;
         } else if (at->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) {
             const auto& features = *reinterpret_cast<const VkPhysicalDeviceVulkan13Features*>(at);
             enabled.full_subgroups = features.subgroupSizeControl != 0 && features.computeFullSubgroups != 0;
         } else if (at->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_FEATURES) {
             const auto& features = *reinterpret_cast<const VkPhysicalDeviceSubgroupSizeControlFeatures*>(at);
             enabled.full_subgroups = features.subgroupSizeControl != 0 && features.computeFullSubgroups != 0;
-        } else if (at->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_FEATURES_KHR) {
+        } else if (at->sType ==
+                   VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_FEATURES_KHR) {
             using Flow = VkPhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR;
             enabled.uniform_flow = reinterpret_cast<const Flow*>(at)->shaderSubgroupUniformControlFlow != 0;
         }
@@ -51,7 +55,8 @@ void Context::adopt(const ForeignDevice& foreign) {
     if (!enabled.addresses || !enabled.scalar_layout) {
         throw Error(ExitCode::kNoDevice,
                     fmt::format("the program's Vulkan device was made without {}{}{}, must be enabled",
-                                enabled.addresses ? "" : "bufferDeviceAddress", enabled.addresses || enabled.scalar_layout ? "" : " and ",
+                                enabled.addresses ? "" : "bufferDeviceAddress",
+                                enabled.addresses || enabled.scalar_layout ? "" : " and ",
                                 enabled.scalar_layout ? "" : "scalarBlockLayout"));
     }
     // They remain when these owners go.
@@ -60,9 +65,10 @@ void Context::adopt(const ForeignDevice& foreign) {
     physical_device_ = vk::raii::PhysicalDevice(instance_, foreign.physical_device);
     requireFeatures("the program's device");
     const auto families = physical_device_.getQueueFamilyProperties();
-    const bool computes =
-        foreign.queue_family < families.size() && bool(families[foreign.queue_family].queueFlags & vk::QueueFlagBits::eCompute);
-    check(computes, "queue family {} of the program's Vulkan device cannot compute, must be one that can", foreign.queue_family);
+    const bool computes = foreign.queue_family < families.size() &&
+                          bool(families[foreign.queue_family].queueFlags & vk::QueueFlagBits::eCompute);
+    check(computes, "queue family {} of the program's Vulkan device cannot compute, must be one that can",
+          foreign.queue_family);
     device_ = vk::raii::Device(physical_device_, foreign.device);
     const_cast<vk::raii::DeviceDispatcher*>(device_.getDispatcher())->vkDestroyDevice = keepDevice;
     queue_ = vk::raii::Queue(device_, foreign.queue);
@@ -70,7 +76,9 @@ void Context::adopt(const ForeignDevice& foreign) {
     queue_mutex_.shareWith(foreign.lock_queue, foreign.unlock_queue);
     device_extensions_.insert(foreign.enabled_extensions.begin(), foreign.enabled_extensions.end());
     has_full_subgroups_ = enabled.full_subgroups;
-    has_subgroup_uniform_flow_ = enabled.uniform_flow && hasDeviceExtension(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME);
+    has_subgroup_uniform_flow_ =
+        enabled.uniform_flow &&
+        hasDeviceExtension(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME);
     pipeline_cache_ = PipelineCache(physical_device_, device_);
     readLimits();
 }

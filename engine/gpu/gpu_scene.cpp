@@ -33,31 +33,36 @@ gpu::SceneChunk pageOf(const gpu::SceneChunk& chunk, std::uint64_t first, std::u
 
 }  // namespace
 
-GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress, bool keeps_table) : traits_(traitsOf(scene)) {
-    check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(), gpu::kMaxItems);
+GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress, bool keeps_table)
+    : traits_(traitsOf(scene)) {
+    check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(),
+          gpu::kMaxItems);
     splat_count_ = splats_held_ = splats_coming_ = static_cast<std::uint32_t>(scene.size());
     const std::uint32_t least_bits = keeps_table ? kPageBits : 0;
     chunk_bits_ = least_bits;
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
     const std::uint64_t most_bytes = std::min(context.maxAllocationBytes(), kMaxChunkBytes);
     while (chunk_bits_ > least_bits &&
-           ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), traits_).bytes > most_bytes) {
+           ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), traits_).bytes >
+               most_bytes) {
         --chunk_bits_;
     }
 
     std::vector<gpu::SceneChunk> table;
     const std::uint64_t chunk_splats = 1ull << chunk_bits_;
-    const std::uint64_t upload_splats =
-        std::clamp<std::uint64_t>(context.maxAllocationBytes() / (2 * deviceBytesPerSplat(shDegree(), traits_.isGaussian3d())), 1,
-                                  std::min(kUploadSplats, std::max(splat_count_, 1u)));
+    const std::uint64_t upload_splats = std::clamp<std::uint64_t>(
+        context.maxAllocationBytes() / (2 * deviceBytesPerSplat(shDegree(), traits_.isGaussian3d())), 1,
+        std::min(kUploadSplats, std::max(splat_count_, 1u)));
     const ChunkLayout upload_layout(upload_splats, traits_);
     const Buffer upload(context, "scene upload", upload_layout.bytes, MemoryKind::kUpload);
     Commands commands(context);
     for (std::uint64_t first = 0; first < splat_count_; first += chunk_splats) {
         const std::uint64_t count = std::min<std::uint64_t>(chunk_splats, splat_count_ - first);
-        const std::uint64_t page_splats = keeps_table ? gpu::kPageSplats : 1, room = (count + page_splats - 1) / page_splats * page_splats;
+        const std::uint64_t page_splats = keeps_table ? gpu::kPageSplats : 1,
+                            room = (count + page_splats - 1) / page_splats * page_splats;
         const ChunkLayout layout(room, traits_);
-        const Buffer& buffer = buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
+        const Buffer& buffer =
+            buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
         table.push_back(layout.chunkAt(buffer, 0, 1.0f));
         if (room > count) {  // the rest of the last page is never visible
             commands.begin();
@@ -66,7 +71,8 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
         }
         for (std::uint64_t done = 0; done < count; done += upload_splats) {
             const std::uint64_t block = std::min<std::uint64_t>(upload_splats, count - done);
-            packSplats(scene, first + done, block, traits_, upload_layout, upload.mapped<std::uint8_t>().data());
+            packSplats(scene, first + done, block, traits_, upload_layout,
+                       upload.mapped<std::uint8_t>().data());
             commands.begin();
             const auto copyArray = [&](std::uint64_t from, std::uint64_t to, std::uint64_t bytes_per_splat) {
                 commands.copy(upload, buffer, block * bytes_per_splat, from, to + done * bytes_per_splat);
@@ -74,7 +80,9 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
             copyArray(upload_layout.positions, layout.positions, sizeof(glm::vec3));
             copyArray(upload_layout.rotations, layout.rotations, sizeof(glm::vec4));
             copyArray(upload_layout.scales, layout.scales, sizeof(glm::vec2));
-            if (traits_.isGaussian3d()) { copyArray(upload_layout.thicknesses, layout.thicknesses, sizeof(float)); }
+            if (traits_.isGaussian3d()) {
+                copyArray(upload_layout.thicknesses, layout.thicknesses, sizeof(float));
+            }
             copyArray(upload_layout.opacities, layout.opacities, sizeof(float));
             copyArray(upload_layout.base_colours, layout.base_colours, sizeof(glm::uvec2));
             copyArray(upload_layout.sh, layout.sh, layout.sh_bytes_per_splat);
@@ -84,8 +92,8 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
     }
     const std::uint64_t table_bytes = std::max<std::uint64_t>(table.size(), 1) * sizeof(gpu::SceneChunk);
     table.resize(table_bytes / sizeof(gpu::SceneChunk));
-    check(table_bytes <= 65536, "{}: {} splats need more than {} allocations of {} MiB", scene.name, scene.size(),
-          65536 / sizeof(gpu::SceneChunk), context.maxAllocationBytes() >> 20);
+    check(table_bytes <= 65536, "{}: {} splats need more than {} allocations of {} MiB", scene.name,
+          scene.size(), 65536 / sizeof(gpu::SceneChunk), context.maxAllocationBytes() >> 20);
     if (keeps_table) { keepTable(scene, table); }
     chunk_table_ = Buffer(context, "scene chunks", table_bytes);
     commands.begin();
@@ -116,11 +124,14 @@ GpuScene GpuScene::asItIs() const {
 void GpuScene::keepTable(const Scene& scene, const std::vector<gpu::SceneChunk>& chunks) {
     const std::uint64_t sh_words = ChunkLayout(1, traits_).sh_bytes_per_splat / sizeof(std::uint32_t);
     for (std::uint64_t first = 0; first < splat_count_; first += gpu::kPageSplats) {
-        table_.chunks.push_back(pageOf(chunks[first >> chunk_bits_], first & ((1ull << chunk_bits_) - 1), sh_words));
+        table_.chunks.push_back(
+            pageOf(chunks[first >> chunk_bits_], first & ((1ull << chunk_bits_) - 1), sh_words));
         PageBounds bounds;
-        for (std::uint64_t i = first; i < std::min<std::uint64_t>(first + gpu::kPageSplats, splat_count_); ++i) {
+        for (std::uint64_t i = first; i < std::min<std::uint64_t>(first + gpu::kPageSplats, splat_count_);
+             ++i) {
             const float thickness = traits_.isGaussian3d() ? scene.thicknesses[i] : 0.0f;
-            bounds.add(scene.positions[i], scene.rotations[i], {scene.scales[i], thickness}, scene.opacities[i]);
+            bounds.add(scene.positions[i], scene.rotations[i], {scene.scales[i], thickness},
+                       scene.opacities[i]);
         }
         table_.bounds.push_back(bounds.page());
     }

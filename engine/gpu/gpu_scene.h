@@ -32,7 +32,8 @@ class GpuScene {
 public:
     // A whole scene that stays as it is. Splits it into chunks of a power of two splats if one allocation
     // cannot hold it. `keeps_table`: it may be placed among others.
-    GpuScene(const Context& context, const Scene& scene, const Progress& progress = {}, bool keeps_table = false);
+    GpuScene(const Context& context, const Scene& scene, const Progress& progress = {},
+             bool keeps_table = false);
 
     // What frames read of it, for those of a thread of its own: counts as they are now, and memory that stays
     // this one's, which outlives it. Brings no changes.

@@ -25,15 +25,19 @@ std::string nameInShader(std::string_view field) {
     return name;
 }
 
-void append(KernelTable& table, const KernelTable& more) { table.insert(table.end(), more.begin(), more.end()); }
+void append(KernelTable& table, const KernelTable& more) {
+    table.insert(table.end(), more.begin(), more.end());
+}
 
 namespace {
 
 // Of SPIR-V, chapter 3.
-constexpr std::uint32_t kExtension = 10, kExecutionMode = 16, kConstantTrue = 41, kConstantFalse = 42, kConstant = 43,
-                        kConstantComposite = 44, kSpecConstantTrue = 48, kSpecConstantFalse = 49, kSpecConstant = 50,
-                        kSpecConstantComposite = 51, kDecorate = 71;
-constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kLocalSize = 17, kWorkgroupSize = 25, kSubgroupUniformFlow = 4421;
+constexpr std::uint32_t kExtension = 10, kExecutionMode = 16, kConstantTrue = 41, kConstantFalse = 42,
+                        kConstant = 43, kConstantComposite = 44, kSpecConstantTrue = 48,
+                        kSpecConstantFalse = 49, kSpecConstant = 50, kSpecConstantComposite = 51,
+                        kDecorate = 71;
+constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kLocalSize = 17, kWorkgroupSize = 25,
+                        kSubgroupUniformFlow = 4421;
 constexpr std::string_view kUniformFlowExtension = "SPV_KHR_subgroup_uniform_control_flow";
 constexpr std::size_t kHeaderWords = 5;
 
@@ -52,25 +56,33 @@ void eachInstruction(std::span<const std::uint32_t> words, const Take& take) {
 // do, since some drivers do their slow work before they remove what a value rules out: SwiftShader then takes
 // a minute for a variant of resample. Without `has_uniform_flow` the shader does not ask for subgroup-uniform
 // control flow.
-std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, const std::vector<std::uint32_t>& values,
-                                      bool has_uniform_flow) {
+std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words,
+                                      const std::vector<std::uint32_t>& values, bool has_uniform_flow) {
     std::map<std::uint32_t, std::uint32_t> value_of;  // by the constant's id
-    std::vector<std::uint32_t> specialized(words.begin(), words.begin() + std::min(words.size(), kHeaderWords));
+    std::vector<std::uint32_t> specialized(words.begin(),
+                                           words.begin() + std::min(words.size(), kHeaderWords));
     eachInstruction(words, [&](std::span<const std::uint32_t> instruction, std::uint32_t opcode) {
         if (opcode == kDecorate && instruction[2] == kSpecId) {
             if (instruction[3] < values.size()) { value_of[instruction[1]] = values[instruction[3]]; }
             return;  // decorations come before what they decorate
         }
-        const bool is_of_flow = opcode == kExtension
-                                    ? std::string_view(reinterpret_cast<const char*>(&instruction[1])) == kUniformFlowExtension
-                                    : opcode == kExecutionMode && instruction[2] == kSubgroupUniformFlow;
+        const bool is_of_flow =
+            opcode == kExtension
+                ? std::string_view(reinterpret_cast<const char*>(&instruction[1])) == kUniformFlowExtension
+                : opcode == kExecutionMode && instruction[2] == kSubgroupUniformFlow;
         if (is_of_flow && !has_uniform_flow) { return; }
-        const auto put = [&](std::uint32_t other) { specialized.push_back((instruction[0] & 0xffff0000) | other); };
-        const auto found = opcode >= kSpecConstantTrue && opcode <= kSpecConstant ? value_of.find(instruction[2]) : value_of.end();
+        const auto put = [&](std::uint32_t other) {
+            specialized.push_back((instruction[0] & 0xffff0000) | other);
+        };
+        const auto found = opcode >= kSpecConstantTrue && opcode <= kSpecConstant
+                               ? value_of.find(instruction[2])
+                               : value_of.end();
         switch (opcode) {
             case kSpecConstantTrue:
             case kSpecConstantFalse:
-                put((found != value_of.end() ? found->second != 0 : opcode == kSpecConstantTrue) ? kConstantTrue : kConstantFalse);
+                put((found != value_of.end() ? found->second != 0 : opcode == kSpecConstantTrue)
+                        ? kConstantTrue
+                        : kConstantFalse);
                 break;
             case kSpecConstant:
                 put(kConstant);
@@ -90,7 +102,9 @@ std::uint32_t localSizeX(std::span<const std::uint32_t> words) {
     std::map<std::uint32_t, std::uint32_t> value_of;
     eachInstruction(words, [&](std::span<const std::uint32_t> instruction, std::uint32_t opcode) {
         if (opcode == kExecutionMode && instruction[2] == kLocalSize) { size = instruction[3]; }
-        if (opcode == kDecorate && instruction[2] == kBuiltIn && instruction[3] == kWorkgroupSize) { id_of_sizes = instruction[1]; }
+        if (opcode == kDecorate && instruction[2] == kBuiltIn && instruction[3] == kWorkgroupSize) {
+            id_of_sizes = instruction[1];
+        }
         if (opcode == kConstant) { value_of[instruction[2]] = instruction[3]; }
         const bool is_composite = opcode == kConstantComposite || opcode == kSpecConstantComposite;
         if (is_composite && instruction[2] == id_of_sizes) { size = value_of[instruction[3]]; }
@@ -100,37 +114,43 @@ std::uint32_t localSizeX(std::span<const std::uint32_t> words) {
 
 }  // namespace
 
-Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants,
-               Keep keep)
+Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t push_bytes,
+               const std::vector<std::uint32_t>& constants, Keep keep)
     : push_bytes_(push_bytes) {
     const auto general = context.shaderWords(shader);
     assert(!general.empty() && push_bytes <= 128);
     assert(keep == Keep::kNothing || context.hasKernelStatistics());
     const std::vector<std::uint32_t> words = specialize(general, constants, context.hasSubgroupUniformFlow());
     subgroups_ = context.fullSubgroups(localSizeX(words));
-    const vk::raii::ShaderModule module(context.device(), vk::ShaderModuleCreateInfo({}, words.size() * sizeof(words[0]), words.data()));
+    const vk::raii::ShaderModule module(
+        context.device(), vk::ShaderModuleCreateInfo({}, words.size() * sizeof(words[0]), words.data()));
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_bytes);
     layout_ = vk::raii::PipelineLayout(context.device(), vk::PipelineLayoutCreateInfo({}, {}, range));
-    const vk::PipelineShaderStageCreateInfo stage(subgroups_, vk::ShaderStageFlagBits::eCompute, *module, "main");
-    const auto flags =
-        keep == Keep::kStatistics ? vk::PipelineCreateFlags(vk::PipelineCreateFlagBits::eCaptureStatisticsKHR) : vk::PipelineCreateFlags();
+    const vk::PipelineShaderStageCreateInfo stage(subgroups_, vk::ShaderStageFlagBits::eCompute, *module,
+                                                  "main");
+    const auto flags = keep == Keep::kStatistics
+                           ? vk::PipelineCreateFlags(vk::PipelineCreateFlagBits::eCaptureStatisticsKHR)
+                           : vk::PipelineCreateFlags();
     // A driver may have no statistics of a kernel that it did not just compile.
     const vk::raii::PipelineCache* cache = keep == Keep::kNothing ? &context.pipelineCache() : nullptr;
     try {
-        pipeline_ = vk::raii::Pipeline(context.device(), cache, vk::ComputePipelineCreateInfo(flags, stage, *layout_));
+        pipeline_ = vk::raii::Pipeline(context.device(), cache,
+                                       vk::ComputePipelineCreateInfo(flags, stage, *layout_));
     } catch (const vk::SystemError& error) {
-        throw Error(ExitCode::kNoDevice,
-                    fmt::format("{}: the driver does not take the shader {}: {}", context.deviceName(), shader, error.what()));
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: the driver does not take the shader {}: {}",
+                                                     context.deviceName(), shader, error.what()));
     }
     context.name(pipeline_, shader);
 }
 
-const Kernel& KernelCache::find(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
+const Kernel& KernelCache::find(const std::string& shader, std::uint32_t push_bytes,
+                                const std::vector<std::uint32_t>& constants) {
     auto key = std::make_pair(shader, constants);
     auto found = kernels_.find(key);
     if (found == kernels_.end()) {
         assert(std::ranges::any_of(table_, [&](const KernelVariant& variant) {
-            return variant.shader == shader && variant.push_bytes == push_bytes && variant.values() == constants;
+            return variant.shader == shader && variant.push_bytes == push_bytes &&
+                   variant.values() == constants;
         }));
         found = kernels_.emplace(std::move(key), Kernel(context_, shader, push_bytes, constants)).first;
     }
@@ -139,7 +159,9 @@ const Kernel& KernelCache::find(const std::string& shader, std::uint32_t push_by
 
 void KernelCache::rebuild() {
     decltype(kernels_) anew;
-    for (const auto& [key, kernel] : kernels_) { anew.emplace(key, Kernel(context_, key.first, kernel.pushBytes(), key.second)); }
+    for (const auto& [key, kernel] : kernels_) {
+        anew.emplace(key, Kernel(context_, key.first, kernel.pushBytes(), key.second));
+    }
     kernels_ = std::move(anew);
 }
 

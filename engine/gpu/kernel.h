@@ -22,8 +22,8 @@ public:
     Kernel(const Context& context, const KernelVariant& variant, Keep keep = Keep::kNothing)
         : Kernel(context, variant.shader, variant.push_bytes, variant.values(), keep) {}
     // `constants` are the values of constant_id 0, 1, 2 ...
-    Kernel(const Context& context, const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants = {},
-           Keep keep = Keep::kNothing);
+    Kernel(const Context& context, const std::string& shader, std::uint32_t push_bytes,
+           const std::vector<std::uint32_t>& constants = {}, Keep keep = Keep::kNothing);
 
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
@@ -61,7 +61,8 @@ public:
     }
 
 private:
-    const Kernel& find(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants);
+    const Kernel& find(const std::string& shader, std::uint32_t push_bytes,
+                       const std::vector<std::uint32_t>& constants);
 
     const Context& context_;
     KernelTable table_;

@@ -14,7 +14,9 @@
 namespace binosplat {
 namespace {
 
-std::uint64_t shWords(int sh_degree) { return static_cast<std::uint64_t>(3 * (shCoefficientCount(sh_degree) - 1) + 1) / 2; }
+std::uint64_t shWords(int sh_degree) {
+    return static_cast<std::uint64_t>(3 * (shCoefficientCount(sh_degree) - 1) + 1) / 2;
+}
 
 // Half floats end at 65504; larger values are clamped to stay finite.
 std::uint32_t packHalves(float low, float high) {
@@ -40,7 +42,9 @@ std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat)
 constexpr double kHair = 1.0 + 1e-5, kRounding = 1e-5;
 
 // How far a splat of this opacity is visible, in scales.
-double reachOf(float opacity) { return kHair * std::sqrt(std::max(2.0 * std::log(255.0 * static_cast<double>(opacity)), 0.0) + kRounding); }
+double reachOf(float opacity) {
+    return kHair * std::sqrt(std::max(2.0 * std::log(255.0 * static_cast<double>(opacity)), 0.0) + kRounding);
+}
 
 }  // namespace
 
@@ -51,7 +55,8 @@ glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, floa
     return reachOf(opacity) * glm::sqrt(u * u + v * v + w * w);
 }
 
-void PageBounds::add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales, float opacity) {
+void PageBounds::add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales,
+                     float opacity) {
     if (!(opacity >= gpu::kMinAlpha)) { return; }
     const glm::dvec3 half = halfExtentOf(rotation, scales, opacity), at(centre);
     low_ = glm::min(low_, at - half);
@@ -65,7 +70,8 @@ gpu::ScenePage PageBounds::page() const {
     if (shown_ == 0) { return {}; }
     // As floats, outwards.
     constexpr float kFar = std::numeric_limits<float>::infinity();
-    gpu::ScenePage page{.low = {}, .reach = std::nextafter(static_cast<float>(reach_), kFar), .high = {}, .count = shown_};
+    gpu::ScenePage page{
+        .low = {}, .reach = std::nextafter(static_cast<float>(reach_), kFar), .high = {}, .count = shown_};
     for (int axis = 0; axis < 3; ++axis) {
         page.low[axis] = std::nextafter(static_cast<float>(low_[axis]), -kFar);
         page.high[axis] = std::nextafter(static_cast<float>(high_[axis]), kFar);
@@ -115,14 +121,15 @@ gpu::SceneChunk ChunkLayout::chunkAt(const Buffer& buffer, std::uint64_t offset_
             sh_degree};
 }
 
-void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
-                std::uint8_t* to, PageBounds* bounds) {
+void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits,
+                const ChunkLayout& layout, std::uint8_t* to, PageBounds* bounds) {
     const auto put = [&]<typename T>(std::uint64_t array, std::uint64_t i, const T& value) {
         std::memcpy(to + array + i * sizeof(T), &value, sizeof(T));
     };
     const auto coefficients = static_cast<std::uint64_t>(shCoefficientCount(scene.sh_degree));
     const std::uint64_t sh_words = layout.sh_bytes_per_splat / sizeof(std::uint32_t);
-    const auto kept = static_cast<std::uint64_t>(shCoefficientCount(std::min(scene.sh_degree, traits.sh_degree)));
+    const auto kept =
+        static_cast<std::uint64_t>(shCoefficientCount(std::min(scene.sh_degree, traits.sh_degree)));
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t splat = first + i;
         const std::optional<glm::vec4> rotation = rotationToShow(scene, splat);
@@ -132,26 +139,31 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
         if (traits.isGaussian3d()) { put(layout.thicknesses, i, scene.thicknesses[splat]); }
         put(layout.opacities, i, rotation ? scene.opacities[splat] : 0.0f);
         if (rotation && bounds != nullptr) {
-            const glm::vec3 scales(scene.scales[splat], scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f);
-            bounds->add(scene.positions[splat], glm::quat(rotation->w, rotation->x, rotation->y, rotation->z), scales,
-                        scene.opacities[splat]);
+            const glm::vec3 scales(scene.scales[splat],
+                                   scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f);
+            bounds->add(scene.positions[splat], glm::quat(rotation->w, rotation->x, rotation->y, rotation->z),
+                        scales, scene.opacities[splat]);
         }
         const float* sh = scene.sh.data() + splat * coefficients * 3;
         put(layout.base_colours, i, glm::uvec2(packHalves(sh[0], sh[1]), packHalves(sh[2], 0.0f)));
         const auto half = [&](std::uint64_t h) { return h < 3 * (kept - 1) ? sh[3 + h] : 0.0f; };
-        for (std::uint64_t w = 0; w < sh_words; ++w) { put(layout.sh, i * sh_words + w, packHalves(half(2 * w), half(2 * w + 1))); }
+        for (std::uint64_t w = 0; w < sh_words; ++w) {
+            put(layout.sh, i * sh_words + w, packHalves(half(2 * w), half(2 * w + 1)));
+        }
     }
 }
 
 PackedPages::PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits)
     : splat_count_(static_cast<std::uint32_t>(count)) {
-    check(count == 0 || scene.isGaussian3d() == traits.isGaussian3d(), "{}: splats of {} scales, the scene's others have {}", scene.name,
-          scene.isGaussian3d() ? 3 : 2, traits.isGaussian3d() ? 3 : 2);
+    check(count == 0 || scene.isGaussian3d() == traits.isGaussian3d(),
+          "{}: splats of {} scales, the scene's others have {}", scene.name, scene.isGaussian3d() ? 3 : 2,
+          traits.isGaussian3d() ? 3 : 2);
     const ChunkLayout layout(gpu::kPageSplats, traits);
     const std::size_t pages = (count + gpu::kPageSplats - 1) / gpu::kPageSplats;
     bytes_.resize(pages * layout.bytes);  // zeros: an opacity of 0 is never visible
     for (std::size_t page = 0; page < pages; ++page) {
-        const std::size_t from = first + page * gpu::kPageSplats, splats = std::min<std::size_t>(gpu::kPageSplats, first + count - from);
+        const std::size_t from = first + page * gpu::kPageSplats,
+                          splats = std::min<std::size_t>(gpu::kPageSplats, first + count - from);
         PageBounds bounds;
         packSplats(scene, from, splats, traits, layout, bytes_.data() + page * layout.bytes, &bounds);
         pages_.push_back(bounds.page());

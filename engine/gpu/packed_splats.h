@@ -39,7 +39,8 @@ struct ChunkLayout {
     // For such splats that begin this far into a buffer.
     [[nodiscard]] gpu::SceneChunk chunkAt(const Buffer& buffer, std::uint64_t offset_bytes, float fade) const;
 
-    std::uint64_t positions = 0, rotations = 0, scales = 0, thicknesses = 0, opacities = 0, base_colours = 0, sh = 0, bytes = 0;
+    std::uint64_t positions = 0, rotations = 0, scales = 0, thicknesses = 0, opacities = 0, base_colours = 0,
+                  sh = 0, bytes = 0;
     std::uint64_t sh_bytes_per_splat = 0;
     std::uint32_t sh_degree = 0;
 };
@@ -64,8 +65,8 @@ private:
 // Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout`
 // (for at least `count` splats). Bands of colours that the scene lacks become zeros, those beyond the traits'
 // degree are left out. `bounds` grows by the visible ones.
-void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
-                std::uint8_t* to, PageBounds* bounds = nullptr);
+void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits,
+                const ChunkLayout& layout, std::uint8_t* to, PageBounds* bounds = nullptr);
 
 // Splats in pages of kPageSplats, each with its own layout and bounds; the last page is padded with splats
 // that are never visible. Can be made on any thread.
@@ -74,7 +75,8 @@ public:
     // Splats [first, first + count) of `scene`. Throws Error if they are discs and the traits' are 3D
     // Gaussians, or the other way round.
     PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
-    PackedPages(const Scene& scene, const SceneTraits& traits) : PackedPages(scene, 0, scene.size(), traits) {}
+    PackedPages(const Scene& scene, const SceneTraits& traits)
+        : PackedPages(scene, 0, scene.size(), traits) {}
     // One page in its packed form.
     PackedPages(std::uint32_t splats, const gpu::ScenePage& page, std::vector<std::uint8_t> bytes)
         : splat_count_(splats), pages_{page}, bytes_(std::move(bytes)) {}

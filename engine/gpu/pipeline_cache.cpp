@@ -50,9 +50,12 @@ std::filesystem::path pipelineCacheFolder() {
 std::filesystem::path pipelineCacheFile(const vk::raii::PhysicalDevice& device) {
     const std::filesystem::path folder = pipelineCacheFolder();
     if (folder.empty()) { return {}; }
-    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
+    const auto properties =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
     std::string name;
-    for (const std::uint8_t byte : properties.get<vk::PhysicalDeviceIDProperties>().deviceUUID) { name += fmt::format("{:02x}", byte); }
+    for (const std::uint8_t byte : properties.get<vk::PhysicalDeviceIDProperties>().deviceUUID) {
+        name += fmt::format("{:02x}", byte);
+    }
     const std::uint32_t driver = properties.get<vk::PhysicalDeviceProperties2>().properties.driverVersion;
     return folder / fmt::format("{}-{:08x}.pipelines", name, driver);
 }
@@ -64,20 +67,23 @@ std::vector<std::uint8_t> sealPipelineCache(const std::vector<std::uint8_t>& dat
     return file;
 }
 
-std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& file, const vk::PhysicalDeviceProperties& device) {
+std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& file,
+                                              const vk::PhysicalDeviceProperties& device) {
     VkPipelineCacheHeaderVersionOne header;
     if (file.size() < sizeof(header) + sizeof(Sum)) { return {}; }
     Sum sum;
     std::memcpy(sum.data(), &*(file.end() - sizeof(Sum)), sizeof(Sum));
     std::vector<std::uint8_t> data(file.begin(), file.end() - sizeof(Sum));
     std::memcpy(&header, data.data(), sizeof(header));
-    const bool ours = header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendorID == device.vendorID &&
-                      header.deviceID == device.deviceID && std::ranges::equal(header.pipelineCacheUUID, device.pipelineCacheUUID);
+    const bool ours = header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
+                      header.vendorID == device.vendorID && header.deviceID == device.deviceID &&
+                      std::ranges::equal(header.pipelineCacheUUID, device.pipelineCacheUUID);
     if (!ours || sum != std::bit_cast<Sum>(checksumOf(data))) { return {}; }
     return data;
 }
 
-PipelineCache::PipelineCache(const vk::raii::PhysicalDevice& physical_device, const vk::raii::Device& device) {
+PipelineCache::PipelineCache(const vk::raii::PhysicalDevice& physical_device,
+                             const vk::raii::Device& device) {
     file_ = pipelineCacheFile(physical_device);
     if (!file_.empty()) { loaded_ = unsealPipelineCache(readWhole(file_), physical_device.getProperties()); }
     cache_ = vk::raii::PipelineCache(device, vk::PipelineCacheCreateInfo({}, loaded_.size(), loaded_.data()));

@@ -35,6 +35,7 @@ std::filesystem::path pipelineCacheFile(const vk::raii::PhysicalDevice& device);
 // A cache's bytes as stored in a file, and back: empty if they were cut off, changed, or made by another
 // device or driver.
 std::vector<std::uint8_t> sealPipelineCache(const std::vector<std::uint8_t>& data);
-std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& file, const vk::PhysicalDeviceProperties& device);
+std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& file,
+                                              const vk::PhysicalDeviceProperties& device);
 
 }  // namespace binosplat

@@ -84,7 +84,9 @@ template <typename K>
 KernelVariant variantOf(const K& kernel) {
     KernelVariant variant{K::kShader, sizeof(typename K::Pass), {}};
     const std::vector<std::uint32_t> values = valuesOf(kernel);
-    for (std::size_t i = 0; i < values.size(); ++i) { variant.constants.emplace_back(nameInShader(K::constants()[i].field), values[i]); }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        variant.constants.emplace_back(nameInShader(K::constants()[i].field), values[i]);
+    }
     return variant;
 }
 

@@ -23,20 +23,26 @@ public:
 
     // Writes levels `first` (unless it has been written) to `last`; `scene` is level `first`. Returns level
     // `last`.
-    Scene make(const Scene& scene, std::size_t first, std::size_t last, Judging judging, const Progress& progress) {
+    Scene make(const Scene& scene, std::size_t first, std::size_t last, Judging judging,
+               const Progress& progress) {
         const auto levels = static_cast<double>(last - first + 1);
         const auto part = [&](std::size_t level, double from, double share) {
             return [=, &progress](double done) {
-                if (progress) { progress((static_cast<double>(level - first) + from + share * done) / levels); }
+                if (progress) {
+                    progress((static_cast<double>(level - first) + from + share * done) / levels);
+                }
             };
         };
         if (first == 0) { writer_.add(0, scene, {}, 0, part(0, 0.0, 0.5)); }
         if (last == first) { return {}; }
-        ThinOut thin_out(context_, scene, std::move(judging.eyes), settings_.near, part(first, 0.5, 0.5), judging.steps);
+        ThinOut thin_out(context_, scene, std::move(judging.eyes), settings_.near, part(first, 0.5, 0.5),
+                         judging.steps);
         Scene thin;
         for (std::size_t level = first + 1; level <= last; ++level) {
-            thin = thin_out.keep(std::max<std::uint64_t>(scene.size() >> (level - first), 1), part(level, 0.0, 0.7));
-            const std::vector<SplatError> errors = thin_out.splatErrorsOf(thin, part(level, 0.7, 0.2), judging.errors_every);
+            thin = thin_out.keep(std::max<std::uint64_t>(scene.size() >> (level - first), 1),
+                                 part(level, 0.0, 0.7));
+            const std::vector<SplatError> errors =
+                thin_out.splatErrorsOf(thin, part(level, 0.7, 0.2), judging.errors_every);
             writer_.add(level, thin, errors, first, part(level, 0.9, 0.1));
         }
         return thin;
@@ -49,8 +55,8 @@ private:
 };
 
 // How many splats there are.
-std::uint64_t spillBlocks(const SceneParts& parts, const StreamedWriter::Blocks& blocks, const StreamedWriter& writer, SceneSpill& spill,
-                          const Progress& progress) {
+std::uint64_t spillBlocks(const SceneParts& parts, const StreamedWriter::Blocks& blocks,
+                          const StreamedWriter& writer, SceneSpill& spill, const Progress& progress) {
     std::uint64_t splats = 0;
     parts([&](Scene part) {
         if (progress) { progress(0.0); }
@@ -65,15 +71,16 @@ std::uint64_t spillBlocks(const SceneParts& parts, const StreamedWriter::Blocks&
 
 }  // namespace
 
-void writeOneLevel(const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer, const Progress& progress) {
+void writeOneLevel(const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer,
+                   const Progress& progress) {
     SceneSpill spill(writer.scratchFolder());
     const StreamedWriter::Blocks blocks = writer.cutBlocks(settings.block_splats);
     (void)spillBlocks(parts, blocks, writer, spill, progress);
     for (std::size_t i = 0; i < blocks.count; ++i) { writer.add(0, spill.read(i), {}, 0, progress); }
 }
 
-void writeSceneLevels(const Context& context, const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer,
-                      const Progress& progress) {
+void writeSceneLevels(const Context& context, const SceneParts& parts, const LevelSettings& settings,
+                      StreamedWriter& writer, const Progress& progress) {
     LevelMaker maker(context, settings, writer);
     const std::size_t last = settings.levels - 1;
     const StreamedWriter::Blocks blocks = writer.cutBlocks(settings.block_splats);
@@ -89,11 +96,15 @@ void writeSceneLevels(const Context& context, const SceneParts& parts, const Lev
     constexpr double kShareOfBlocks = 0.95;
     for (std::size_t i = 0; i < blocks.count; ++i) {
         const auto done = [&](double share) {
-            if (progress) { progress(kShareOfBlocks * (static_cast<double>(i) + share) / static_cast<double>(blocks.count)); }
+            if (progress) {
+                progress(kShareOfBlocks * (static_cast<double>(i) + share) /
+                         static_cast<double>(blocks.count));
+            }
         };
         const Scene block = spill.read(i);
         std::vector<Eye> eyes = eyesOnto(block, settings.eyes, settings.block_eyes, settings.block_side_px);
-        const Scene thin = maker.make(block, 0, of_blocks, {std::move(eyes), settings.block_steps, settings.block_errors_every}, done);
+        const Scene thin = maker.make(
+            block, 0, of_blocks, {std::move(eyes), settings.block_steps, settings.block_errors_every}, done);
         if (i == 0) { scene = pickSplats(thin, {}); }
         appendSplats(scene, thin);
     }

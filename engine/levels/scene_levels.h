@@ -26,11 +26,12 @@ struct LevelSettings {
 using SceneParts = std::function<void(const std::function<void(Scene)>& take)>;
 
 // Only the finest, in the same blocks; needs no device.
-void writeOneLevel(const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer, const Progress& progress = {});
+void writeOneLevel(const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer,
+                   const Progress& progress = {});
 // Writes all levels with a writer that has cut the leaves. The parts are requested once; after that, one
 // block of them is in memory at a time, or the whole scene if it is one block. The same on every run on one
 // device. Throws what `progress` throws.
-void writeSceneLevels(const Context& context, const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer,
-                      const Progress& progress = {});
+void writeSceneLevels(const Context& context, const SceneParts& parts, const LevelSettings& settings,
+                      StreamedWriter& writer, const Progress& progress = {});
 
 }  // namespace binosplat

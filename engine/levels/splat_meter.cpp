@@ -13,7 +13,9 @@ namespace {
 constexpr double kRoomMade = 1.25;
 constexpr std::uint32_t kFirstPairs = 1u << 18;
 
-std::uint32_t roomFor(std::uint32_t needed) { return static_cast<std::uint32_t>(std::min<double>(kRoomMade * needed, gpu::kMaxItems)); }
+std::uint32_t roomFor(std::uint32_t needed) {
+    return static_cast<std::uint32_t>(std::min<double>(kRoomMade * needed, gpu::kMaxItems));
+}
 
 }  // namespace
 
@@ -28,9 +30,12 @@ void SplatMeter::show(const GpuScene& scene, bool fits) {
     fits_ = fits;
     const FrameCapacity before = buffers_.capacity();
     buffers_ = makeFrameBuffers(context_, scene.splatCount());
-    growFrameBuffers(context_, buffers_, {std::max(scene.splatCount(), 1u), std::max(before.pairs, kFirstPairs)});
+    growFrameBuffers(context_, buffers_,
+                     {std::max(scene.splatCount(), 1u), std::max(before.pairs, kFirstPairs)});
     sums_ = {};
-    sums_ = Buffer(context_, "contributions", std::max<std::uint64_t>(scene.splatCount(), 1) * sumsPerSplat(fits) * sizeof(std::int64_t));
+    sums_ =
+        Buffer(context_, "contributions",
+               std::max<std::uint64_t>(scene.splatCount(), 1) * sumsPerSplat(fits) * sizeof(std::int64_t));
     commands_.begin();
     commands_.fillZero(sums_);
     commands_.submitAndWait();
@@ -45,7 +50,9 @@ void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
         picture.size_px = eye.size_px;
         picture.colours = Buffer(context_, "colours", pixels * sizeof(gpu::vec4));
     }
-    if (buffers_.tile_ranges.bytes() != range_bytes) { buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes); }
+    if (buffers_.tile_ranges.bytes() != range_bytes) {
+        buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes);
+    }
     // A device may leave out parts of a tile of very many splats, as llvmpipe did of 103,999: these are black
     // then, not what was in memory.
     commands_.begin();
@@ -57,7 +64,8 @@ void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
 void SplatMeter::measure(const Eye& eye, double near, Picture& picture, const Picture* wanted) {
     render(eye, near, picture);
     commands_.begin();
-    recordContributions(kernels_, commands_, *scene_, buffers_, targets_, picture, wanted != nullptr ? *wanted : picture, sums_, fits_);
+    recordContributions(kernels_, commands_, *scene_, buffers_, targets_, picture,
+                        wanted != nullptr ? *wanted : picture, sums_, fits_);
     commands_.endPass();
     commands_.submitAndWait();
 }

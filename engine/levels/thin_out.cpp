@@ -31,7 +31,9 @@ constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
 // The sums of one splat, in pixels.
 struct SplatSums {
     std::span<const std::int64_t> steps;
-    double operator[](std::size_t i) const { return static_cast<double>(steps[i]) / static_cast<double>(gpu::kContributionSteps); }
+    double operator[](std::size_t i) const {
+        return static_cast<double>(steps[i]) / static_cast<double>(gpu::kContributionSteps);
+    }
 
     // How far a logarithm moves.
     [[nodiscard]] double growth(std::size_t pull, std::size_t hold) const {
@@ -52,7 +54,8 @@ void takeStep(Scene& scene, std::span<const std::int64_t> sums) {
             scene.sh[i * width + channel] += static_cast<float>(missing / constant_band);
         }
         const auto growthOf = [&](std::size_t pull, std::size_t hold, double share) {
-            return static_cast<float>(std::exp(std::clamp(share * of.growth(pull, hold), -kMostGrowth, kMostGrowth)));
+            return static_cast<float>(
+                std::exp(std::clamp(share * of.growth(pull, hold), -kMostGrowth, kMostGrowth)));
         };
         const float denser = growthOf(gpu::kSumOpacityPull, gpu::kSumOpacityHold, kOpacityRate);
         scene.opacities[i] = std::clamp(scene.opacities[i] * denser, kFaintest, kDensest);
@@ -63,7 +66,9 @@ void takeStep(Scene& scene, std::span<const std::int64_t> sums) {
 }
 
 // The share of a splat that stays, 0 to 1. A splat that no eye sees has almost none.
-double shareOf(std::int64_t weight, double factor) { return std::min(1.0, factor * (static_cast<double>(weight) + 1.0)); }
+double shareOf(std::int64_t weight, double factor) {
+    return std::min(1.0, factor * (static_cast<double>(weight) + 1.0));
+}
 
 // The factor with which all shares add up to `count`, fewer than there are.
 double factorFor(std::span<const std::int64_t> weights, std::uint64_t count) {
@@ -81,7 +86,8 @@ std::vector<Eye> eyesOf(const std::vector<View>& views, gpu::uint side_px) {
     std::vector<Eye> eyes;
     for (const View& view : views) {
         const glm::uvec2 size_px(side_px);
-        eyes.push_back({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px});
+        eyes.push_back({lookAt(view.eye, view.look, view.up),
+                        intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px});
     }
     return eyes;
 }
@@ -98,11 +104,13 @@ std::vector<Eye> standingEyes(const Scene& scene, std::size_t count, std::size_t
     return eyesOf(standingViews(scene, count, first), side_px);
 }
 
-std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::size_t count, gpu::uint side_px) {
+std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::size_t count,
+                          gpu::uint side_px) {
     std::vector<View> views;
     for (const Eye& eye : from) {
         const Pose& pose = eye.world_from_camera;
-        views.push_back({pose.position, transform(pose, {0.0, 0.0, 1.0}), pose.orientation * glm::dvec3(0.0, -1.0, 0.0), 0.0});
+        views.push_back({pose.position, transform(pose, {0.0, 0.0, 1.0}),
+                         pose.orientation * glm::dvec3(0.0, -1.0, 0.0), 0.0});
     }
     glm::dvec3 low(part.positions.at(0)), high = low;
     for (const glm::vec3& position : part.positions) {
@@ -112,8 +120,15 @@ std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::siz
     return eyesOf(viewsOnto(low, high, views, count), side_px);
 }
 
-ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress, int steps)
-    : context_(context), scene_(scene), eyes_(std::move(eyes)), near_(near), steps_(steps), meter_(context), wanted_(eyes_.size()) {
+ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near,
+                 const Progress& progress, int steps)
+    : context_(context),
+      scene_(scene),
+      eyes_(std::move(eyes)),
+      near_(near),
+      steps_(steps),
+      meter_(context),
+      wanted_(eyes_.size()) {
     const GpuScene whole(context, scene);
     meter_.show(whole, false);
     for (std::size_t i = 0; i < eyes_.size(); ++i) {
@@ -122,7 +137,9 @@ ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> ey
     }
     const std::vector<std::int64_t> sums = meter_.sums();
     weights_.resize(scene.size());
-    for (std::size_t i = 0; i < weights_.size(); ++i) { weights_[i] = sums[i * gpu::kErrorSums + gpu::kSumWeight]; }
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+        weights_[i] = sums[i * gpu::kErrorSums + gpu::kSumWeight];
+    }
 }
 
 // Along a curve through the scene each splat adds its share, and one stays wherever these add up to another
@@ -161,7 +178,9 @@ void ThinOut::fit(Scene& scene, const Progress& progress) {
         meter_.show(shown, true);
         for (std::size_t i = static_cast<std::size_t>(step) % kParts; i < eyes_.size(); i += kParts) {
             meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
-            if (progress) { progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / steps_); }
+            if (progress) {
+                progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / steps_);
+            }
         }
         takeStep(scene, meter_.sums());
     }
@@ -185,7 +204,8 @@ double ThinOut::errorOf(const Scene& scene) {
     return values > 0 ? sum / static_cast<double>(values) : 0.0;
 }
 
-std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress, std::size_t every) {
+std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress,
+                                               std::size_t every) {
     const GpuScene shown(context_, scene);
     meter_.show(shown, false);
     Picture picture;

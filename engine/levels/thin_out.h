@@ -26,8 +26,8 @@ class ThinOut {
 public:
     // Renders `scene`, which must outlive this, from all eyes, and reports to `progress`. `near` is in scene
     // units. `steps`: of a fit, each from every fourth eye.
-    ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress = {},
-            int steps = kFitSteps);
+    ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near,
+            const Progress& progress = {}, int steps = kFitSteps);
 
     // The indices of `count` splats, favouring those with the greater sums of blending weights over all
     // pixels of all eyes; ascending.
@@ -40,7 +40,8 @@ public:
     [[nodiscard]] double errorOf(const Scene& scene);
     // The same for each splat of the other scene, which must have some, where it shows; from one of `every`
     // of the eyes.
-    [[nodiscard]] std::vector<SplatError> splatErrorsOf(const Scene& scene, const Progress& progress = {}, std::size_t every = 1);
+    [[nodiscard]] std::vector<SplatError> splatErrorsOf(const Scene& scene, const Progress& progress = {},
+                                                        std::size_t every = 1);
 
 private:
     void fit(Scene& scene, const Progress& progress);

@@ -197,8 +197,9 @@ typedef struct bsp_view {
 
 // Sets everything but the headers of `count` views, 1 or 2, with square pixels: from `eye` to `look`, with
 // `up` pointing upwards. Two views are `eye_distance` apart.
-BSP_API bsp_result bsp_look_at(const double eye[3], const double look[3], const double up[3], double eye_distance, double fov_x_rad,
-                               uint32_t width, uint32_t height, uint32_t count, bsp_view* views);
+BSP_API bsp_result bsp_look_at(const double eye[3], const double look[3], const double up[3],
+                               double eye_distance, double fov_x_rad, uint32_t width, uint32_t height,
+                               uint32_t count, bsp_view* views);
 
 // How the pictures of two eyes are made; docs/how-it-works.md explains each mode.
 typedef enum bsp_mode {

@@ -73,8 +73,8 @@ private:
 
 using Views = std::array<bsp_view, 2>;
 
-inline Views lookAt(const double (&eye)[3], const double (&look)[3], const double (&up)[3], double eye_distance, double fov_x_rad,
-                    unsigned width, unsigned height) {
+inline Views lookAt(const double (&eye)[3], const double (&look)[3], const double (&up)[3],
+                    double eye_distance, double fov_x_rad, unsigned width, unsigned height) {
     Views views{make<bsp_view>(BSP_TYPE_VIEW), make<bsp_view>(BSP_TYPE_VIEW)};
     check(bsp_look_at(eye, look, up, eye_distance, fov_x_rad, width, height, 2, views.data()));
     return views;
@@ -107,7 +107,8 @@ public:
         return properties;
     }
     // Two eyes where to begin.
-    [[nodiscard]] Views startViews(double eye_distance, double fov_x_rad, unsigned width, unsigned height) const {
+    [[nodiscard]] Views startViews(double eye_distance, double fov_x_rad, unsigned width,
+                                   unsigned height) const {
         const bsp_scene_properties start = properties();
         return lookAt(start.eye, start.look, start.up, eye_distance, fov_x_rad, width, height);
     }
@@ -144,13 +145,18 @@ public:
         frame.view_count = 2;
         return render(frame);
     }
-    [[nodiscard]] Picture colour(const bsp_view& view, unsigned index) { return read(view, index, 4, bsp_read_colour); }
-    [[nodiscard]] Picture depth(const bsp_view& view, unsigned index) { return read(view, index, 1, bsp_read_depth); }
+    [[nodiscard]] Picture colour(const bsp_view& view, unsigned index) {
+        return read(view, index, 4, bsp_read_colour);
+    }
+    [[nodiscard]] Picture depth(const bsp_view& view, unsigned index) {
+        return read(view, index, 1, bsp_read_depth);
+    }
 
 private:
     template <typename Read>
     Picture read(const bsp_view& view, unsigned index, unsigned channels, Read from) {
-        Picture picture{view.width, view.height, std::vector<float>(std::size_t{channels} * view.width * view.height)};
+        Picture picture{view.width, view.height,
+                        std::vector<float>(std::size_t{channels} * view.width * view.height)};
         check(from(get(), index, picture.values.data(), picture.values.size()));
         return picture;
     }

@@ -98,7 +98,8 @@ BSP_API bsp_result bsp_prepare(bsp_renderer renderer, const bsp_frame_info* fram
 // after it wait for it. Submit the buffer once, to the device's queue, with a renderer's frames in the order
 // of their recording. Every view has a bsp_target. If it fails, nothing is recorded. `number` identifies the
 // frame for bsp_collect; at most 8 frames may be uncollected.
-BSP_API bsp_result bsp_record(bsp_renderer renderer, const bsp_frame_info* frame, VkCommandBuffer commands, uint64_t* number);
+BSP_API bsp_result bsp_record(bsp_renderer renderer, const bsp_frame_info* frame, VkCommandBuffer commands,
+                              uint64_t* number);
 
 typedef struct bsp_submit_info {
     uint32_t type, size;  // BSP_TYPE_SUBMIT_INFO
@@ -110,7 +111,8 @@ typedef struct bsp_submit_info {
 } bsp_submit_info;
 
 // The same in a command buffer of the library's own, which the library submits.
-BSP_API bsp_result bsp_submit(bsp_renderer renderer, const bsp_frame_info* frame, const bsp_submit_info* info, uint64_t* number);
+BSP_API bsp_result bsp_submit(bsp_renderer renderer, const bsp_frame_info* frame, const bsp_submit_info* info,
+                              uint64_t* number);
 
 // Takes a frame back, and says how it went; `result` may be null. After bsp_record, the caller must know by a
 // fence or semaphore of its own that the device has finished it. After bsp_submit, returns BSP_NOT_READY if

@@ -27,7 +27,9 @@ bsp_result codeOf(const vk::SystemError& error) {
 Failure failureNow() noexcept {
     try {
         throw;
-    } catch (const Cancelled&) { return {BSP_ERROR_CANCELLED, "cancelled"}; } catch (const DeviceError& error) {
+    } catch (const Cancelled&) {
+        return {BSP_ERROR_CANCELLED, "cancelled"};
+    } catch (const DeviceError& error) {
         using Kind = DeviceError::Kind;
         return {error.kind() == Kind::kLost     ? BSP_ERROR_DEVICE_LOST
                 : error.kind() == Kind::kMemory ? BSP_ERROR_OUT_OF_MEMORY

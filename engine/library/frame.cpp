@@ -59,10 +59,11 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const AskedFrame& asked) {
     settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
     settings.stereo.budget = frame.budget == 0.0 ? kUsualBudget : std::max(frame.budget, 0.0);
     settings.stereo.move_cost = kDefaultMoveCost;
-    check(frame.error_bound_db >= 0.0 && frame.error_bound_db <= 60.0, "error_bound_db is {}, must be 0 to 60", frame.error_bound_db);
+    check(frame.error_bound_db >= 0.0 && frame.error_bound_db <= 60.0,
+          "error_bound_db is {}, must be 0 to 60", frame.error_bound_db);
     settings.stereo.error_bound_db = frame.error_bound_db;
-    check(frame.foveation_rad >= 0.0 && frame.foveation_rad < std::numbers::pi, "foveation_rad is {}, must be 0 to pi",
-          frame.foveation_rad);
+    check(frame.foveation_rad >= 0.0 && frame.foveation_rad < std::numbers::pi,
+          "foveation_rad is {}, must be 0 to pi", frame.foveation_rad);
     settings.half_periphery = frame.foveation_rad > 0.0;
     return settings;
 }
@@ -78,10 +79,12 @@ std::optional<Gaze> gazeOf(const bsp_view& view, double foveation_rad) {
 
 // The eyes, and their targets if wanted.
 void readViews(const bsp_frame_info& frame, bool with_targets, AskedFrame& asked) {
-    check(frame.view_count >= 1 && frame.view_count <= kMostViews, "there are {} views, must be 1 to {}", frame.view_count, kMostViews);
+    check(frame.view_count >= 1 && frame.view_count <= kMostViews, "there are {} views, must be 1 to {}",
+          frame.view_count, kMostViews);
     checkHeader(frame.views, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
     for (std::size_t i = 0; i < frame.view_count; ++i) {
-        const auto* view = reinterpret_cast<const bsp_view*>(reinterpret_cast<const unsigned char*>(frame.views) + i * frame.views->size);
+        const auto* view = reinterpret_cast<const bsp_view*>(
+            reinterpret_cast<const unsigned char*>(frame.views) + i * frame.views->size);
         const auto known = readStructure(view, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
         asked.eyes.push_back(eyeOf(known, asked.origin));
         asked.gazes.push_back(gazeOf(known, frame.foveation_rad));
@@ -93,7 +96,8 @@ void readViews(const bsp_frame_info& frame, bool with_targets, AskedFrame& asked
         const auto known_target = readStructure(target, BSP_TYPE_TARGET, kFirstTargetSize, "bsp_target");
         checkTarget(known_target, asked.settings.half_floats, asked.settings.background != glm::dvec3(0.0));
         asked.targets.push_back(known_target);
-        asked.settings.keep_depth = asked.settings.keep_both_depths = asked.settings.keep_depth || known_target.depth != VK_NULL_HANDLE;
+        asked.settings.keep_depth = asked.settings.keep_both_depths =
+            asked.settings.keep_depth || known_target.depth != VK_NULL_HANDLE;
     }
 }
 
@@ -118,7 +122,10 @@ bsp_frame_result binosplat::resultOf(const FrameResult& result, double share_the
 }
 
 bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device)
-    : device(of_device), uploads_(of_device.context), on_device_(&of_device.empty), targets_(of_device.context) {
+    : device(of_device),
+      uploads_(of_device.context),
+      on_device_(&of_device.empty),
+      targets_(of_device.context) {
     part(0);
     const std::lock_guard lock(device.renderers_mutex);
     device.renderers.insert(this);
@@ -170,7 +177,9 @@ std::span<const Eye> bsp_renderer_t::eyesOf(const AskedFrame& asked, std::size_t
 
 FrameSettings bsp_renderer_t::settingsOf(const AskedFrame& asked, std::size_t index) {
     FrameSettings settings = asked.settings;
-    for (std::size_t e = 0; e < eyesOf(asked, index).size(); ++e) { settings.gazes[e] = asked.gazes[2 * index + e]; }
+    for (std::size_t e = 0; e < eyesOf(asked, index).size(); ++e) {
+        settings.gazes[e] = asked.gazes[2 * index + e];
+    }
     if (eyesOf(asked, index).size() == 1) {
         settings.mode = Mode::kMono;
         settings.keep_history = settings.keep_both_depths = false;
@@ -206,7 +215,8 @@ Image bsp_renderer_t::read(std::uint32_t view, bool depth) {
 
 bsp_result bsp_renderer_create(bsp_device device, bsp_renderer* renderer) {
     return guarded([&] {
-        check(device != nullptr && renderer != nullptr, "{} is null", device == nullptr ? "device" : "renderer");
+        check(device != nullptr && renderer != nullptr, "{} is null",
+              device == nullptr ? "device" : "renderer");
         *renderer = new bsp_renderer_t(*device);
         return BSP_SUCCESS;
     });
@@ -217,7 +227,9 @@ void bsp_renderer_destroy(bsp_renderer renderer) { delete renderer; }
 bsp_result bsp_render(bsp_renderer renderer, const bsp_frame_info* frame, bsp_frame_result* result) {
     return guarded([&] {
         check(renderer != nullptr, "renderer is null");
-        if (result != nullptr) { checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result"); }
+        if (result != nullptr) {
+            checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result");
+        }
         AskedFrame asked = renderer->ask(readFrame(frame), false);
         renderer->render(asked, result);
         return BSP_SUCCESS;
@@ -226,11 +238,14 @@ bsp_result bsp_render(bsp_renderer renderer, const bsp_frame_info* frame, bsp_fr
 
 namespace {
 
-bsp_result readInto(bsp_renderer renderer, std::uint32_t view, bool depth, float* values, std::uint64_t count) {
+bsp_result readInto(bsp_renderer renderer, std::uint32_t view, bool depth, float* values,
+                    std::uint64_t count) {
     return guarded([&] {
-        check(renderer != nullptr && values != nullptr, "{} is null", renderer == nullptr ? "renderer" : "values");
+        check(renderer != nullptr && values != nullptr, "{} is null",
+              renderer == nullptr ? "renderer" : "values");
         const Image image = renderer->read(view, depth);
-        check(count >= image.values.size(), "the array holds {} floats, must hold {}", count, image.values.size());
+        check(count >= image.values.size(), "the array holds {} floats, must hold {}", count,
+              image.values.size());
         std::ranges::copy(image.values, values);
         return BSP_SUCCESS;
     });

@@ -87,7 +87,8 @@ struct bsp_device_t {
 
 // Loads on a thread of its own, which ends before the object does.
 struct bsp_scene_t {
-    bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info, std::optional<binosplat::Scene> of_splats, binosplat::LoadNotes notes);
+    bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info,
+                std::optional<binosplat::Scene> of_splats, binosplat::LoadNotes notes);
     ~bsp_scene_t();
 
     [[nodiscard]] const binosplat::GpuScene& onDevice() const { return live ? live->scene() : *gpu; }
@@ -113,7 +114,8 @@ private:
     void load(std::optional<binosplat::Scene> scene, binosplat::LoadNotes notes);
     // Makes `live`, and returns the scene by which it is judged; nothing if the source neither streams nor
     // moves.
-    std::optional<binosplat::Scene> openLive(binosplat::LoadNotes& notes, const binosplat::Progress& progress);
+    std::optional<binosplat::Scene> openLive(binosplat::LoadNotes& notes,
+                                             const binosplat::Progress& progress);
     void judge(const binosplat::Scene& scene, const binosplat::LoadNotes& notes);
 
     binosplat::ChangeUploads uploads_;

@@ -14,10 +14,11 @@ constexpr std::size_t kMostUncollected = 8;
 }  // namespace
 
 Submission::Submission(const Context& context)
-    : pool(context.device(), vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, context.queueFamily())),
+    : pool(context.device(), vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer,
+                                                       context.queueFamily())),
       fence(context.device(), vk::FenceCreateInfo()) {
-    commands =
-        std::move(vk::raii::CommandBuffers(context.device(), vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1))[0]);
+    commands = std::move(vk::raii::CommandBuffers(
+        context.device(), vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1))[0]);
 }
 
 void bsp_renderer_t::prepare(AskedFrame& asked) {
@@ -36,14 +37,16 @@ void bsp_renderer_t::prepare(AskedFrame& asked) {
 bool bsp_renderer_t::isCut(const AskedFrame& asked, std::size_t index) {
     const std::span<const Eye> eyes = eyesOf(asked, index);
     const auto targets = std::span(asked.targets).subspan(2 * index, eyes.size());
-    return (eyes.size() == 1 || rendersBothInFull(asked.settings.mode)) && std::ranges::all_of(targets, [](const bsp_target& target) {
-               return (target.flags & (BSP_TARGET_DEPTH_TEST | BSP_TARGET_DEPTH_BY_PIXEL)) == BSP_TARGET_DEPTH_TEST;
+    return (eyes.size() == 1 || rendersBothInFull(asked.settings.mode)) &&
+           std::ranges::all_of(targets, [](const bsp_target& target) {
+               return (target.flags & (BSP_TARGET_DEPTH_TEST | BSP_TARGET_DEPTH_BY_PIXEL)) ==
+                      BSP_TARGET_DEPTH_TEST;
            });
 }
 
 std::vector<vk::CommandBuffer> bsp_renderer_t::lend(AskedFrame& asked, Lent& lent) {
-    check(lent_.size() < kMostUncollected, "{} frames are recorded and not collected, must be less than {}", lent_.size(),
-          kMostUncollected);
+    check(lent_.size() < kMostUncollected, "{} frames are recorded and not collected, must be less than {}",
+          lent_.size(), kMostUncollected);
     begin(asked);
     lent.share_there = share_there_;
     std::vector<vk::CommandBuffer> commands;
@@ -54,7 +57,8 @@ std::vector<vk::CommandBuffer> bsp_renderer_t::lend(AskedFrame& asked, Lent& len
             const bool is_cut = isCut(asked, p);
             FrameSettings settings = settingsOf(asked, p);
             for (std::size_t e = 0; is_cut && e < eyes.size(); ++e) {
-                settings.mesh_depths[e] = targets_.meshDepths(asked.targets[2 * p + e], eyes[e].size_px, 2 * p + e);
+                settings.mesh_depths[e] =
+                    targets_.meshDepths(asked.targets[2 * p + e], eyes[e].size_px, 2 * p + e);
             }
             if (is_cut) {
                 settings.before = [&](Commands& before) {
@@ -65,7 +69,8 @@ std::vector<vk::CommandBuffer> bsp_renderer_t::lend(AskedFrame& asked, Lent& len
             }
             const StereoFrame::Lent its = frame.lend(eyes, settings, [&](Commands& after) {
                 for (std::size_t e = 0; e < eyes.size(); ++e) {
-                    targets_.record(after, frame.picture(static_cast<int>(e)), asked.targets[2 * p + e], 2 * p + e, is_cut);
+                    targets_.record(after, frame.picture(static_cast<int>(e)), asked.targets[2 * p + e],
+                                    2 * p + e, is_cut);
                 }
             });
             lent.numbers.push_back(its.number);
@@ -103,13 +108,15 @@ std::uint64_t bsp_renderer_t::submit(AskedFrame& asked, const bsp_submit_info& i
         commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
         commands.executeCommands(parts);
         commands.end();
-        const std::uint32_t waits = info.wait != VK_NULL_HANDLE ? 1 : 0, signals = info.signal != VK_NULL_HANDLE ? 1 : 0;
+        const std::uint32_t waits = info.wait != VK_NULL_HANDLE ? 1 : 0,
+                            signals = info.signal != VK_NULL_HANDLE ? 1 : 0;
         const bool has_values = info.wait_value != 0 || info.signal_value != 0;
         const vk::TimelineSemaphoreSubmitInfo values(waits, &info.wait_value, signals, &info.signal_value);
         const vk::Semaphore wait(info.wait), signal(info.signal);
         const vk::PipelineStageFlags stage = vk::PipelineStageFlagBits::eAllCommands;
         const vk::CommandBuffer buffer = *commands;
-        const vk::SubmitInfo submission(waits, &wait, &stage, 1, &buffer, signals, &signal, has_values ? &values : nullptr);
+        const vk::SubmitInfo submission(waits, &wait, &stage, 1, &buffer, signals, &signal,
+                                        has_values ? &values : nullptr);
         const std::lock_guard lock(context.queueMutex());
         context.queue().submit(submission, *lent.submission->fence);
     } catch (const vk::SystemError& error) {
@@ -141,7 +148,8 @@ bool bsp_renderer_t::collect(std::uint64_t number, bsp_frame_result* result) {
 
 void bsp_renderer_t::discard(std::uint64_t number) {
     const auto found = lent_.find(number);
-    check(found != lent_.end() && !found->second.submission, "frame {} is none that is recorded and not collected", number);
+    check(found != lent_.end() && !found->second.submission,
+          "frame {} is none that is recorded and not collected", number);
     drop(found->second);
     lent_.erase(found);
 }
@@ -164,20 +172,25 @@ bsp_result bsp_prepare(bsp_renderer renderer, const bsp_frame_info* frame) {
     });
 }
 
-bsp_result bsp_record(bsp_renderer renderer, const bsp_frame_info* frame, VkCommandBuffer commands, std::uint64_t* number) {
+bsp_result bsp_record(bsp_renderer renderer, const bsp_frame_info* frame, VkCommandBuffer commands,
+                      std::uint64_t* number) {
     return guarded([&] {
-        check(renderer != nullptr && number != nullptr, "{} is null", renderer == nullptr ? "renderer" : "number");
+        check(renderer != nullptr && number != nullptr, "{} is null",
+              renderer == nullptr ? "renderer" : "number");
         AskedFrame asked = renderer->ask(readFrame(frame), true);
         *number = renderer->record(asked, commands);
         return BSP_SUCCESS;
     });
 }
 
-bsp_result bsp_submit(bsp_renderer renderer, const bsp_frame_info* frame, const bsp_submit_info* info, std::uint64_t* number) {
+bsp_result bsp_submit(bsp_renderer renderer, const bsp_frame_info* frame, const bsp_submit_info* info,
+                      std::uint64_t* number) {
     return guarded([&] {
-        check(renderer != nullptr && number != nullptr, "{} is null", renderer == nullptr ? "renderer" : "number");
+        check(renderer != nullptr && number != nullptr, "{} is null",
+              renderer == nullptr ? "renderer" : "number");
         const auto known =
-            info != nullptr ? readStructure(info, BSP_TYPE_SUBMIT_INFO, sizeof(bsp_header), "bsp_submit_info") : bsp_submit_info{};
+            info != nullptr ? readStructure(info, BSP_TYPE_SUBMIT_INFO, sizeof(bsp_header), "bsp_submit_info")
+                            : bsp_submit_info{};
         AskedFrame asked = renderer->ask(readFrame(frame), true);
         *number = renderer->submit(asked, known);
         return BSP_SUCCESS;
@@ -187,7 +200,9 @@ bsp_result bsp_submit(bsp_renderer renderer, const bsp_frame_info* frame, const 
 bsp_result bsp_collect(bsp_renderer renderer, std::uint64_t number, bsp_frame_result* result) {
     return guarded([&] {
         check(renderer != nullptr, "renderer is null");
-        if (result != nullptr) { checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result"); }
+        if (result != nullptr) {
+            checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result");
+        }
         return renderer->collect(number, result) ? BSP_SUCCESS : BSP_NOT_READY;
     });
 }

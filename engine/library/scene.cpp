@@ -23,8 +23,12 @@ void put(double (&to)[3], const glm::dvec3& from) {
 
 }  // namespace
 
-bsp_scene_t::bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info, std::optional<Scene> of_splats, LoadNotes notes)
-    : device(of_device), source(info.source != nullptr ? info.source : "splats"), asked(info), uploads_(of_device.context) {
+bsp_scene_t::bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info, std::optional<Scene> of_splats,
+                         LoadNotes notes)
+    : device(of_device),
+      source(info.source != nullptr ? info.source : "splats"),
+      asked(info),
+      uploads_(of_device.context) {
     thread_ = std::thread([this, scene = std::move(of_splats), known = std::move(notes)]() mutable {
         try {
             load(std::move(scene), std::move(known));
@@ -54,10 +58,15 @@ void bsp_scene_t::load(std::optional<Scene> scene, LoadNotes notes) {
         };
     };
     if (!scene && asked.live != 0) { scene = openLive(notes, stepOf(0.0, kReadingShare)); }
-    if (!scene) { scene = loadSceneFromAnywhere(source, 0, notes, stepOf(0.0, kReadingShare), {}, usualWeb()); }
+    if (!scene) {
+        scene = loadSceneFromAnywhere(source, 0, notes, stepOf(0.0, kReadingShare), {}, usualWeb());
+    }
     for (const std::string& line : notes.lines) { device.log(line); }
     judge(*scene, notes);
-    if (!live) { gpu = std::make_unique<GpuScene>(device.context, *scene, stepOf(kReadingShare, 1.0 - kReadingShare), true); }
+    if (!live) {
+        gpu = std::make_unique<GpuScene>(device.context, *scene, stepOf(kReadingShare, 1.0 - kReadingShare),
+                                         true);
+    }
     properties.device_bytes = onDevice().bytes();
     if (cancelled) { throw Cancelled(); }
     progress_ = 1.0;
@@ -69,7 +78,8 @@ std::optional<Scene> bsp_scene_t::openLive(LoadNotes& notes, const Progress& pro
         if (!isMovingScene(source)) { return std::nullopt; }
         MovingSettings settings{.threads = threads};
         if (asked.rate_hz > 0.0) { settings.rate_hz = asked.rate_hz; }
-        auto moving = std::make_unique<MovingScene>(device.context, SceneSeries(source), std::move(settings), progress);
+        auto moving =
+            std::make_unique<MovingScene>(device.context, SceneSeries(source), std::move(settings), progress);
         notes = moving->notes();
         Scene first = moving->takeFirst();
         live = std::move(moving);
@@ -79,7 +89,8 @@ std::optional<Scene> bsp_scene_t::openLive(LoadNotes& notes, const Progress& pro
     web.fetch.attempts = 2;  // the loader retries by itself
     auto chunks = std::make_unique<ChunkSource>(source, web, progress);
     const auto coarsest = static_cast<std::uint32_t>(chunks->meta().levels.size() - 1);
-    Scene scene = loadSceneFromAnywhere(source, 0, notes, progress, {.level = coarsest, .fits = {}}, usualWeb());
+    Scene scene =
+        loadSceneFromAnywhere(source, 0, notes, progress, {.level = coarsest, .fits = {}}, usualWeb());
     StreamSettings settings{.splat_budget = asked.splat_budget};
     live = std::make_unique<SceneStream>(device.context, std::move(chunks), std::move(settings));
     return scene;
@@ -96,7 +107,9 @@ void bsp_scene_t::judge(const Scene& scene, const LoadNotes& notes) {
     properties.core_size = coreSize(scene);
     properties.near = usualNear(scene);
     glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
-    for (const glm::vec3& position : scene.positions) { low = glm::min(low, position), high = glm::max(high, position); }
+    for (const glm::vec3& position : scene.positions) {
+        low = glm::min(low, position), high = glm::max(high, position);
+    }
     if (scene.size() == 0) { low = high = glm::vec3(0.0f); }
     put(properties.low, glm::dvec3(low) + origin);
     put(properties.high, glm::dvec3(high) + origin);
@@ -124,14 +137,19 @@ void bsp_scene_t::requireThere() {
 bsp_result bsp_scene_create(bsp_device device, const bsp_scene_info* info, bsp_scene* scene) {
     return guarded([&] {
         check(device != nullptr && scene != nullptr, "{} is null", device == nullptr ? "device" : "scene");
-        const auto known = readStructure(info, BSP_TYPE_SCENE_INFO, offsetof(bsp_scene_info, splats), "bsp_scene_info");
-        check((known.source == nullptr) != (known.splats == nullptr), "bsp_scene_info has {}, must have a source or splats",
+        const auto known =
+            readStructure(info, BSP_TYPE_SCENE_INFO, offsetof(bsp_scene_info, splats), "bsp_scene_info");
+        check((known.source == nullptr) != (known.splats == nullptr),
+              "bsp_scene_info has {}, must have a source or splats",
               known.source == nullptr ? "neither" : "both");
-        check(known.rate_hz >= 0.0 && std::isfinite(known.rate_hz), "rate_hz is {}, must be 0 or more", known.rate_hz);
+        check(known.rate_hz >= 0.0 && std::isfinite(known.rate_hz), "rate_hz is {}, must be 0 or more",
+              known.rate_hz);
         LoadNotes notes;
         std::optional<Scene> of_splats;
         if (known.splats != nullptr) {
-            of_splats = sceneOf(readStructure(known.splats, BSP_TYPE_SPLATS, offsetof(bsp_splats, activated), "bsp_splats"), notes);
+            of_splats = sceneOf(
+                readStructure(known.splats, BSP_TYPE_SPLATS, offsetof(bsp_splats, activated), "bsp_splats"),
+                notes);
         }
         *scene = new bsp_scene_t(*device, known, std::move(of_splats), std::move(notes));
         return BSP_SUCCESS;

@@ -88,12 +88,14 @@ void bsp_scene_t::advance(std::span<const Eye> eyes, double time_s, bool settles
         }
         throw;
     }
-    for (const std::string& line : live->takeLines(settles ? Waits::kBriefly : Waits::kNever)) { device.log(line); }
+    for (const std::string& line : live->takeLines(settles ? Waits::kBriefly : Waits::kNever)) {
+        device.log(line);
+    }
 }
 
 void bsp_renderer_t::readScenes(const bsp_frame_info& frame, AskedFrame& asked) const {
-    check(frame.scene == nullptr || frame.instance_count == 0, "a frame has a scene and {} instances, must have one of the two",
-          frame.instance_count);
+    check(frame.scene == nullptr || frame.instance_count == 0,
+          "a frame has a scene and {} instances, must have one of the two", frame.instance_count);
     const auto add = [&](bsp_scene_t* scene) {
         check(scene != nullptr, "the scene of an instance is null");
         check(&scene->device == &device, "the scene is of another device than the renderer");
@@ -106,18 +108,20 @@ void bsp_renderer_t::readScenes(const bsp_frame_info& frame, AskedFrame& asked) 
         return;
     }
     if (frame.instance_count == 0) { return; }
-    check(frame.instance_count <= kMostInstances, "there are {} instances, must be at most {}", frame.instance_count, kMostInstances);
+    check(frame.instance_count <= kMostInstances, "there are {} instances, must be at most {}",
+          frame.instance_count, kMostInstances);
     constexpr std::size_t kFirstSize = offsetof(bsp_instance, hidden) + sizeof(std::uint32_t);
     checkHeader(frame.instances, BSP_TYPE_INSTANCE, kFirstSize, "bsp_instance");
     for (std::size_t i = 0; i < frame.instance_count; ++i) {
-        const auto* instance =
-            reinterpret_cast<const bsp_instance*>(reinterpret_cast<const unsigned char*>(frame.instances) + i * frame.instances->size);
+        const auto* instance = reinterpret_cast<const bsp_instance*>(
+            reinterpret_cast<const unsigned char*>(frame.instances) + i * frame.instances->size);
         const auto known = readStructure(instance, BSP_TYPE_INSTANCE, kFirstSize, "bsp_instance");
         add(known.scene);
         asked.placed.push_back(placedOf(known));
     }
     const PlacedScene& first = asked.placed[0];
-    asked.origin = group_ && group_->isOf(asked.placed) ? group_->origin() : transform(first.world_from_scene, first.origin);
+    asked.origin = group_ && group_->isOf(asked.placed) ? group_->origin()
+                                                        : transform(first.world_from_scene, first.origin);
 }
 
 bool bsp_renderer_t::shows(const bsp_scene_t* scene) {
@@ -140,7 +144,8 @@ void bsp_renderer_t::showOnDevice(const GpuScene& scene) {
 
 void bsp_renderer_t::show(const AskedFrame& asked) {
     if (asked.scenes == shown_ && (group_ != nullptr) == !asked.placed.empty()) { return; }
-    auto group = asked.placed.empty() ? nullptr : std::make_unique<PlacedScenes>(device.context, asked.placed);
+    auto group =
+        asked.placed.empty() ? nullptr : std::make_unique<PlacedScenes>(device.context, asked.placed);
     showOnDevice(group ? group->scene() : asked.scenes.empty() ? device.empty : asked.scenes[0]->onDevice());
     group_ = std::move(group);
     views_read_ = 0;
@@ -160,7 +165,8 @@ void bsp_renderer_t::begin(AskedFrame& asked) {
     share_there_ = 1.0;
     for (std::size_t s = 0; s < asked.scenes.size(); ++s) {
         bsp_scene_t* const scene = asked.scenes[s];
-        const auto is_first = std::ranges::find(asked.scenes, scene) == asked.scenes.begin() + static_cast<std::ptrdiff_t>(s);
+        const auto is_first =
+            std::ranges::find(asked.scenes, scene) == asked.scenes.begin() + static_cast<std::ptrdiff_t>(s);
         if (!scene->live || !is_first) { continue; }
         const std::vector<Eye> eyes = eyesIn(asked, scene);
         if (eyes.empty()) { continue; }

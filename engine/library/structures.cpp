@@ -7,8 +7,10 @@ void checkHeader(const void* given, bsp_type type, std::size_t first_size, const
     check(given != nullptr, "{} is null", name);
     bsp_header header;
     std::memcpy(&header, given, sizeof(header));
-    check(header.type == static_cast<std::uint32_t>(type), "{} has the type {}, must be {}", name, header.type, static_cast<int>(type));
-    check(header.size >= first_size && header.size < 65536, "{} has the size {}, must be at least {}", name, header.size, first_size);
+    check(header.type == static_cast<std::uint32_t>(type), "{} has the type {}, must be {}", name,
+          header.type, static_cast<int>(type));
+    check(header.size >= first_size && header.size < 65536, "{} has the size {}, must be at least {}", name,
+          header.size, first_size);
 }
 
 const bsp_header* findNext(const void* next, std::uint32_t type) {

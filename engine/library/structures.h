@@ -21,8 +21,10 @@ Structure readStructure(const Structure* given, bsp_type type, std::size_t first
     std::memcpy(&known, given, std::min<std::size_t>(given->size, sizeof(Structure)));
     const auto* bytes = reinterpret_cast<const unsigned char*>(given);
     for (std::size_t at = sizeof(Structure); at < given->size; ++at) {
-        check(bytes[at] == 0, "{} has {} bytes, and not all are 0 after the {} that this library knows, a later one is needed", name,
-              given->size, sizeof(Structure));
+        check(
+            bytes[at] == 0,
+            "{} has {} bytes, and not all are 0 after the {} that this library knows, a later one is needed",
+            name, given->size, sizeof(Structure));
     }
     return known;
 }

@@ -23,7 +23,8 @@ public:
     // Makes its kernel in advance.
     void makeKernels(bool half_floats) { kernels_.get(PresentKernel{.half_colours = half_floats}); }
     // Records it; all views' colours go through the same buffer. `is_cut`: its depths have been read already.
-    void record(Commands& commands, const Picture& picture, const bsp_target& target, std::size_t view, bool is_cut);
+    void record(Commands& commands, const Picture& picture, const bsp_target& target, std::size_t view,
+                bool is_cut);
 
 private:
     const Context& context_;

@@ -16,12 +16,15 @@ PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity)
 
 std::uint32_t PairBuffers::capacityBeside(const Buffer& colours, std::uint32_t pairs) {
     const std::uint64_t there = colours.bytes() / sizeof(gpu::uint);
-    const std::uint64_t words_here = 4 - std::min<std::uint64_t>(there / std::max(pairs, 1u), kMostWordsBeside);
+    const std::uint64_t words_here =
+        4 - std::min<std::uint64_t>(there / std::max(pairs, 1u), kMostWordsBeside);
     return static_cast<std::uint32_t>((words_here * pairs + 3) / 4);
 }
 
 PairArrays PairBuffers::arrays() const {
-    const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>(i * capacity_ * sizeof(gpu::uint)); };
+    const auto array = [&](std::uint64_t i) {
+        return buffer_.address<gpu::uint>(i * capacity_ * sizeof(gpu::uint));
+    };
     return {{array(0), array(1)}, {array(2), array(3)}, capacity_};
 }
 
@@ -38,7 +41,8 @@ PairArrays PairBuffers::arraysBeside(const Buffer& colours, unsigned key_bits) c
     const std::array kept_first{&last.values, &last.keys, &other.values, &other.keys};
     for (std::uint64_t i = 0; i < kept_first.size(); ++i) {
         const Buffer& buffer = i < words_here ? buffer_ : colours;
-        *kept_first.at(i) = buffer.address<gpu::uint>((i < words_here ? i : i - words_here) * most * sizeof(gpu::uint));
+        *kept_first.at(i) =
+            buffer.address<gpu::uint>((i < words_here ? i : i - words_here) * most * sizeof(gpu::uint));
     }
     return arrays;
 }
@@ -49,11 +53,13 @@ FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count,
     FrameBuffers buffers;
     buffers.splat_count = splat_count;
     buffers.state = Buffer(context, "frame state", sizeof(FrameState));
-    buffers.visibility =
-        Buffer(context, "visibility", buffers.cullGroups() * (gpu::kCullBlock / 8 + sizeof(gpu::uint)) + gpu::kSumRuns * sizeof(gpu::uint));
+    buffers.visibility = Buffer(
+        context, "visibility",
+        buffers.cullGroups() * (gpu::kCullBlock / 8 + sizeof(gpu::uint)) + gpu::kSumRuns * sizeof(gpu::uint));
     if (in_pages) {
         buffers.pages =
-            Buffer(context, "visible pages", (buffers.cullGroups() + gpu::kSumRuns + 2 * buffers.pageWords()) * sizeof(gpu::uint));
+            Buffer(context, "visible pages",
+                   (buffers.cullGroups() + gpu::kSumRuns + 2 * buffers.pageWords()) * sizeof(gpu::uint));
     }
     return buffers;
 }
@@ -67,9 +73,9 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.pairs = {};
         buffers.pairs = PairBuffers(context, capacity.pairs);
     }
-    const std::uint64_t scratch_bytes =
-        std::max({VisibleBuffers::groupSumBytes(capacity.visible) + sizeof(gpu::uint), Sort::histogramBytes(capacity.visible),
-                  Sort::histogramBytes(4 * std::uint64_t{capacity.pairs})});
+    const std::uint64_t scratch_bytes = std::max(
+        {VisibleBuffers::groupSumBytes(capacity.visible) + sizeof(gpu::uint),
+         Sort::histogramBytes(capacity.visible), Sort::histogramBytes(4 * std::uint64_t{capacity.pairs})});
     if (buffers.scratch.bytes() != scratch_bytes) {
         buffers.scratch = {};
         buffers.scratch = Buffer(context, "sums and sort scratch", scratch_bytes);

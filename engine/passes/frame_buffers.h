@@ -60,7 +60,9 @@ public:
     [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileSets() const { return at<gpu::uvec2>(8); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(0); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(16); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const {
+        return at<gpu::ProjectedSplat>(16);
+    }
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
     // Of the sums of tiles that project leaves for bin.
     static std::uint64_t groupSumBytes(std::uint64_t capacity) {
@@ -124,15 +126,23 @@ struct FrameBuffers {
     Buffer tile_ranges;
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity()}; }
-    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const {
+        return state.address<gpu::EyeView>(offsetof(FrameState, views));
+    }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const {
+        return visibility.address<gpu::uint>();
+    }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {
         return visibility.address<gpu::uint>(cullGroups() * (gpu::kCullBlock / 8));
     }
-    [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kCullBlock - 1) / gpu::kCullBlock; }
+    [[nodiscard]] std::uint64_t cullGroups() const {
+        return (std::uint64_t{splat_count} + gpu::kCullBlock - 1) / gpu::kCullBlock;
+    }
     [[nodiscard]] std::uint64_t pageWords() const { return (cullGroups() + 31) / 32; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageList() const { return pages.address<gpu::uint>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageBits() const { return pageList().at(cullGroups() + gpu::kSumRuns); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageBits() const {
+        return pageList().at(cullGroups() + gpu::kSumRuns);
+    }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageWordOffsets() const { return pageBits().at(pageWords()); }
     // Offsets of the lists within `state`.
     static std::uint64_t visibleList(int i) {
@@ -143,7 +153,8 @@ struct FrameBuffers {
     }
     // Of a field of TargetState.
     static std::uint64_t targetField(int target, std::uint64_t offset) {
-        return offsetof(FrameState, targets) + static_cast<std::uint64_t>(target) * sizeof(TargetState) + offset;
+        return offsetof(FrameState, targets) + static_cast<std::uint64_t>(target) * sizeof(TargetState) +
+               offset;
     }
 };
 

@@ -36,10 +36,11 @@ gpu::HistoryView historyViewOf(const Eye& now, const Eye& history, double near, 
 // The target's colours, words and tiles.
 void recordFromHistory(PassKernels& kernels, Commands& commands, const HistoryInputs& in);
 // Between the two: marks where the scene has changed since the history was made.
-void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
-                   gpu::uint count);
+void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs& in,
+                   gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
 // Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at
 // the same time. The first one's WarpView has the budget, a share of all eyes' work.
-void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes, gpu::uint at_once);
+void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes,
+                  gpu::uint at_once);
 
 }  // namespace binosplat

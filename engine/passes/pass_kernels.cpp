@@ -14,7 +14,8 @@ namespace {
 
 // A cell gets one subgroup if subgroups have 8 to 64 invocations and four of them fit into a workgroup.
 std::uint32_t cellThreads(const Context& context, std::uint32_t wanted) {
-    const std::uint32_t most = std::min(64u, std::bit_floor(context.maxGroupInvocations() / gpu::kCellsPerTile));
+    const std::uint32_t most =
+        std::min(64u, std::bit_floor(context.maxGroupInvocations() / gpu::kCellsPerTile));
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
 }
 
@@ -28,8 +29,10 @@ KernelTable frameKernels(std::uint32_t threads) {
     append(table, everyVariant<CullKernel>([](const CullKernel& k) { return k.placed <= k.in_pages; }));
     append(table, everyVariant<CompactKernel>([](const CompactKernel& k) { return k.placed <= k.in_pages; }));
     // Scenes among others each have their own degree.
-    append(table, everyVariant<ProjectKernel>([](const ProjectKernel& k) { return k.placed == 0 || k.sh_degree == kMaxShDegree; }));
-    append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
+    append(table, everyVariant<ProjectKernel>(
+                      [](const ProjectKernel& k) { return k.placed == 0 || k.sh_degree == kMaxShDegree; }));
+    append(table, everyVariant<TileRangesKernel>(
+                      [](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     for (std::uint32_t choices = 0; choices < 8; ++choices) {
         const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
         Kept moving = plain, even_rows = plain, history = plain, cut = plain;
@@ -51,14 +54,16 @@ KernelTable frameKernels(std::uint32_t threads) {
 
 // Of one eye from the other.
 KernelTable warpKernels(const Context& context) {
-    KernelTable table =
-        everyVariantOf<WeighKernel, DepthBoundsKernel, EdgeRoisKernel, ReprojectKernel, NewcomersKernel, ComponentsKernel>();
+    KernelTable table = everyVariantOf<WeighKernel, DepthBoundsKernel, EdgeRoisKernel, ReprojectKernel,
+                                       NewcomersKernel, ComponentsKernel>();
     append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
                // Rows are moved if they can be, and odd rows of predicted are warped like even ones.
                if (k.row_source == gpu::kPlacesGiven) {
-                   return k.rectified && k.row_steps == 0 && (k.way == gpu::kSamples || k.way == gpu::kDoesAny);
+                   return k.rectified && k.row_steps == 0 &&
+                          (k.way == gpu::kSamples || k.way == gpu::kDoesAny);
                }
-               return k.row_steps <= most_steps && (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
+               return k.row_steps <= most_steps &&
+                      (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
                       (k.row_source != gpu::kWholeRowMoved || k.way == gpu::kPredicts);
            }));
     append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.history == 0; }));
@@ -68,11 +73,14 @@ KernelTable warpKernels(const Context& context) {
 
 // Of an eye from its history.
 KernelTable historyKernels(bool by_address) {
-    KernelTable table = everyVariant<WarpHistoryKernel>([=](const WarpHistoryKernel& k) { return k.by_address == by_address; });
-    append(table, everyVariant<WarpPixelsKernel>([=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
+    KernelTable table = everyVariant<WarpHistoryKernel>(
+        [=](const WarpHistoryKernel& k) { return k.by_address == by_address; });
+    append(table, everyVariant<WarpPixelsKernel>(
+                      [=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
     append(table, everyVariant<MarkChangedKernel>());
     append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.history == 1; }));
-    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.history == 1 && k.predicted == 1; }));
+    append(table, everyVariant<SelectKernel>(
+                      [](const SelectKernel& k) { return k.history == 1 && k.predicted == 1; }));
     return table;
 }
 
@@ -83,7 +91,8 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
     append(table, historyKernels(context.isSoftware()));
     for (std::uint32_t choices = 0; choices < 4; ++choices) {
         const bool by_lanes = areNarrow(context, threads_per_cell);
-        table.push_back(variantOf(contributeKernel(threads_per_cell, choices >> 1, (choices & 1) != 0, by_lanes)));
+        table.push_back(
+            variantOf(contributeKernel(threads_per_cell, choices >> 1, (choices & 1) != 0, by_lanes)));
     }
     return table;
 }
@@ -100,7 +109,8 @@ PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t
 PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
     : PassKernels(context, Sort(context), cellThreads(context, threads_per_cell)) {}
 
-ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_kind, bool fits, bool by_lanes) {
+ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_kind, bool fits,
+                                  bool by_lanes) {
     return {.threads_per_cell = threads_per_cell,
             .splat_kind = splat_kind,
             .fits = fits,
@@ -109,7 +119,8 @@ ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t 
 }
 
 // With coarse tiles there is one kernel for all that a picture may keep, and so there is where meshes cut.
-RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
+RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape,
+                                bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
             // A history has the depth from its words.

@@ -12,7 +12,8 @@ public:
     // subgroups. Fewer if its workgroups are too small.
     explicit PassKernels(const Context& context, std::uint32_t threads_per_cell = 0);
 
-    KeyValues recordSort(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
+    KeyValues recordSort(Commands& commands, KeyValues in, KeyValues spare,
+                         gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
                          std::uint64_t list_bytes, unsigned key_bits) {
         return sort_.record(*this, commands, in, spare, histograms, lists, list_bytes, key_bits);
     }

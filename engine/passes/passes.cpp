@@ -14,17 +14,18 @@ namespace {
 
 // A workgroup for each block of kCullBlock splats: of the whole scene, or of its visible pages.
 template <typename Pass>
-void dispatchOverBlocks(Commands& commands, const Kernel& kernel, const Pass& pass, const GpuScene& scene, const FrameBuffers& buffers,
-                        int list) {
+void dispatchOverBlocks(Commands& commands, const Kernel& kernel, const Pass& pass, const GpuScene& scene,
+                        const FrameBuffers& buffers, int list) {
     if (scene.isInPages()) {
-        commands.dispatchIndirect(kernel, pass, buffers.state, FrameBuffers::visiblePages(list) + offsetof(gpu::ListState, per_item));
+        commands.dispatchIndirect(kernel, pass, buffers.state,
+                                  FrameBuffers::visiblePages(list) + offsetof(gpu::ListState, per_item));
     } else {
         commands.dispatchOver(kernel, pass, scene.splatCount(), gpu::kCullBlock);
     }
 }
 
-void recordCullPages(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                     Role role) {
+void recordCullPages(PassKernels& kernels, Commands& commands, const GpuScene& scene,
+                     const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
     commands.beginPass({role, FrameStage::kSort, "cull_pages"});
     commands.dispatchOver(kernels.get(CullPagesKernel{.splat_kind = scene.splatKind()}),
                           gpu::CullPagesPass{.pages = scene.pages(),
@@ -32,7 +33,8 @@ void recordCullPages(PassKernels& kernels, Commands& commands, const GpuScene& s
                                              .page_bits = buffers.pageBits(),
                                              .word_offsets = buffers.pageWordOffsets(),
                                              .page_list = buffers.pageList(),
-                                             .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
+                                             .visible_pages = buffers.state.address<gpu::ListState>(
+                                                 FrameBuffers::visiblePages(eyes.list)),
                                              .page_count = static_cast<gpu::uint>(scene.chunkCount()),
                                              .first_eye = static_cast<gpu::uint>(eyes.first),
                                              .eye_count = static_cast<gpu::uint>(eyes.count)},
@@ -47,14 +49,18 @@ struct Recording {
     const FrameBuffers& buffers;
     const Targets& targets;
 
-    [[nodiscard]] std::uint64_t field(std::uint64_t offset) const { return FrameBuffers::targetField(targets.first, offset); }
+    [[nodiscard]] std::uint64_t field(std::uint64_t offset) const {
+        return FrameBuffers::targetField(targets.first, offset);
+    }
     // Where the lists' states lie in the frame's.
     [[nodiscard]] std::uint64_t visibleList() const {
         return targets.chosen && !targets.lists_chosen ? field(offsetof(TargetState, chosen_visible))
                                                        : FrameBuffers::visibleList(targets.list);
     }
     [[nodiscard]] auto visible() const { return buffers.state.address<gpu::ListState>(visibleList()); }
-    [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(field(offsetof(TargetState, pairs))); }
+    [[nodiscard]] auto pairs() const {
+        return buffers.state.address<gpu::ListState>(field(offsetof(TargetState, pairs)));
+    }
     [[nodiscard]] auto states() const { return buffers.state.address<gpu::TargetState>(field(0)); }
     [[nodiscard]] auto eyes() const { return buffers.eyes().at(static_cast<std::uint64_t>(targets.first)); }
     [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
@@ -82,10 +88,11 @@ void recordProjected(const Recording& recording) {
                                    .splats_apart = recording.splatsApart(),
                                    .capacity = recording.targets.pairs.capacity,
                                    .is_dimmed = scene.traits().is_dimmed};
-    const ProjectKernel kernel{.sh_degree = static_cast<std::uint32_t>(scene.isPlaced() ? kMaxShDegree : scene.shDegree()),
-                               .masked = recording.targets.masked,
-                               .splat_kind = scene.splatKind(),
-                               .placed = scene.isPlaced()};
+    const ProjectKernel kernel{
+        .sh_degree = static_cast<std::uint32_t>(scene.isPlaced() ? kMaxShDegree : scene.shDegree()),
+        .masked = recording.targets.masked,
+        .splat_kind = scene.splatKind(),
+        .placed = scene.isPlaced()};
     recording.commands.dispatchIndirect(recording.kernels.get(kernel), project, recording.buffers.state,
                                         recording.visibleList() + offsetof(gpu::ListState, per_block));
 }
@@ -110,7 +117,8 @@ void recordBinned(const Recording& recording) {
     recording.commands.dispatchIndirect(recording.kernels.get(BinKernel{}), bin, recording.buffers.state,
                                         recording.visibleList() + offsetof(gpu::ListState, per_block));
     const BinLargeKernel large{.splat_kind = recording.scene.splatKind()};
-    recording.commands.dispatch(recording.kernels.get(large), bin, gpu::kBinLargeGroups, 1, recording.count());
+    recording.commands.dispatch(recording.kernels.get(large), bin, gpu::kBinLargeGroups, 1,
+                                recording.count());
 }
 
 void recordTileRanges(const Recording& recording, const KeyValues& sorted) {
@@ -123,99 +131,111 @@ void recordTileRanges(const Recording& recording, const KeyValues& sorted) {
                                      .targets = recording.states(),
                                      .background = targets.background};
     const Kernel& kernel = recording.kernels.get(
-        recording.listsFull() ? TileRangesKernel{.masked = true, .half_colours = targets.kept.half_floats} : TileRangesKernel{});
+        recording.listsFull() ? TileRangesKernel{.masked = true, .half_colours = targets.kept.half_floats}
+                              : TileRangesKernel{});
     if (targets.chosen) {
-        recording.commands.dispatchIndirect(kernel, ranges, recording.buffers.state,
-                                            recording.field(offsetof(TargetState, chosen_tiles) + offsetof(gpu::ListState, per_item)));
+        recording.commands.dispatchIndirect(
+            kernel, ranges, recording.buffers.state,
+            recording.field(offsetof(TargetState, chosen_tiles) + offsetof(gpu::ListState, per_item)));
     } else {
         const gpu::uint tiles = targets.size_tiles.x * targets.size_tiles.y;
-        recording.commands.dispatch(kernel, ranges, (tiles + gpu::kGroupSize - 1) / gpu::kGroupSize, 1, recording.count());
+        recording.commands.dispatch(kernel, ranges, (tiles + gpu::kGroupSize - 1) / gpu::kGroupSize, 1,
+                                    recording.count());
     }
 }
 
 void recordRasterized(const Recording& recording, const KeyValues& sorted) {
     const Targets& targets = recording.targets;
     const bool is_light = recording.scene.isLight();
-    const gpu::RasterizePass rasterize{.eyes = recording.eyes(),
-                                       .splats = recording.buffers.visible.splats(),
-                                       .ranks = sorted.values,
-                                       .ranges = recording.ranges(),
-                                       .targets = recording.states(),
-                                       .background = is_light ? glm::vec3(lightOf(glm::dvec3(targets.background))) : targets.background,
-                                       .depth_choice = targets.kept.depth_choice,
-                                       .is_light = is_light};
-    const Kernel& kernel = recording.kernels.get(rasterizeKernel(recording.kernels.threadsPerCell(), targets.kept,
-                                                                 recording.scene.splatKind(), recording.listsFull(), targets.coarse));
+    const gpu::RasterizePass rasterize{
+        .eyes = recording.eyes(),
+        .splats = recording.buffers.visible.splats(),
+        .ranks = sorted.values,
+        .ranges = recording.ranges(),
+        .targets = recording.states(),
+        .background = is_light ? glm::vec3(lightOf(glm::dvec3(targets.background))) : targets.background,
+        .depth_choice = targets.kept.depth_choice,
+        .is_light = is_light};
+    const Kernel& kernel = recording.kernels.get(rasterizeKernel(recording.kernels.threadsPerCell(),
+                                                                 targets.kept, recording.scene.splatKind(),
+                                                                 recording.listsFull(), targets.coarse));
     if (recording.listsFull()) {
-        recording.commands.dispatchIndirect(kernel, rasterize, recording.buffers.state,
-                                            recording.field(offsetof(TargetState, counters) + offsetof(gpu::EyeCounters, per_full_tile)));
+        recording.commands.dispatchIndirect(
+            kernel, rasterize, recording.buffers.state,
+            recording.field(offsetof(TargetState, counters) + offsetof(gpu::EyeCounters, per_full_tile)));
     } else {  // hidden tiles have no pairs, and so become background
-        recording.commands.dispatch(kernel, rasterize, targets.size_tiles.x, targets.size_tiles.y, recording.count());
+        recording.commands.dispatch(kernel, rasterize, targets.size_tiles.x, targets.size_tiles.y,
+                                    recording.count());
     }
 }
 
 }  // namespace
 
-void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                Role role) {
+void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
+                const EyesOfList& eyes, Role role) {
     if (scene.isInPages()) { recordCullPages(kernels, commands, scene, buffers, eyes, role); }
     commands.beginPass({role, FrameStage::kSort, "cull"});
-    const gpu::CullPass pass{.chunks = scene.chunks(),
-                             .eyes = buffers.eyes(),
-                             .page_list = buffers.pageList(),
-                             .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
-                             .visible_bits = buffers.visibleBits(),
-                             .group_counts = buffers.groupCounts(),
-                             .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
-                             .splat_count = scene.splatCount(),
-                             .chunk_bits = scene.chunkBits(),
-                             .first_eye = static_cast<gpu::uint>(eyes.first),
-                             .eye_count = static_cast<gpu::uint>(eyes.count),
-                             .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
-                             .at_once = static_cast<gpu::uint>(eyes.shares),
-                             .first_tile_mask = eyes.first_mask,
-                             .last_tile_mask = eyes.last_mask};
-    const CullKernel kernel{
-        .splat_kind = scene.splatKind(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages(), .placed = scene.isPlaced()};
+    const gpu::CullPass pass{
+        .chunks = scene.chunks(),
+        .eyes = buffers.eyes(),
+        .page_list = buffers.pageList(),
+        .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
+        .visible_bits = buffers.visibleBits(),
+        .group_counts = buffers.groupCounts(),
+        .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
+        .splat_count = scene.splatCount(),
+        .chunk_bits = scene.chunkBits(),
+        .first_eye = static_cast<gpu::uint>(eyes.first),
+        .eye_count = static_cast<gpu::uint>(eyes.count),
+        .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
+        .at_once = static_cast<gpu::uint>(eyes.shares),
+        .first_tile_mask = eyes.first_mask,
+        .last_tile_mask = eyes.last_mask};
+    const CullKernel kernel{.splat_kind = scene.splatKind(),
+                            .masked = eyes.first_mask.value != 0,
+                            .in_pages = scene.isInPages(),
+                            .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
 }
 
-void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                 Role role) {
+void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
+                 const EyesOfList& eyes, Role role) {
     commands.beginPass({role, FrameStage::kSort, "compact"});
     const KeyValues order = buffers.visible.order(), spare = buffers.visible.spare();
-    const gpu::CompactPass pass{.chunks = scene.chunks(),
-                                .eyes = buffers.eyes(),
-                                .page_list = buffers.pageList(),
-                                .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
-                                .visible_bits = buffers.visibleBits(),
-                                .group_offsets = buffers.groupCounts(),
-                                .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
-                                .keys = spare.keys,
-                                .splats = spare.values,
-                                .splat_count = scene.splatCount(),
-                                .chunk_bits = scene.chunkBits(),
-                                .order_eye = static_cast<gpu::uint>(eyes.order_eye),
-                                .by_distance = eyes.middle.has_value(),
-                                .middle = eyes.middle.value_or(gpu::Place{})};
+    const gpu::CompactPass pass{
+        .chunks = scene.chunks(),
+        .eyes = buffers.eyes(),
+        .page_list = buffers.pageList(),
+        .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
+        .visible_bits = buffers.visibleBits(),
+        .group_offsets = buffers.groupCounts(),
+        .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
+        .keys = spare.keys,
+        .splats = spare.values,
+        .splat_count = scene.splatCount(),
+        .chunk_bits = scene.chunkBits(),
+        .order_eye = static_cast<gpu::uint>(eyes.order_eye),
+        .by_distance = eyes.middle.has_value(),
+        .middle = eyes.middle.value_or(gpu::Place{})};
     const CompactKernel kernel{.in_pages = scene.isInPages(), .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
     static_assert(Sort::endsInSpare(gpu::kDepthKeyBits));
-    kernels.recordSort(commands, spare, order, buffers.scratch.address<gpu::uint>(), buffers.state, FrameBuffers::visibleList(eyes.list),
-                       gpu::kDepthKeyBits);
+    kernels.recordSort(commands, spare, order, buffers.scratch.address<gpu::uint>(), buffers.state,
+                       FrameBuffers::visibleList(eyes.list), gpu::kDepthKeyBits);
 }
 
-void recordPictures(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets,
-                    Role role) {
+void recordPictures(PassKernels& kernels, Commands& commands, const GpuScene& scene,
+                    const FrameBuffers& buffers, const Targets& targets, Role role) {
     const Recording recording{kernels, commands, scene, buffers, targets};
     commands.beginPass({role, FrameStage::kSplat, "project"});
     recordProjected(recording);
     commands.beginPass({role, FrameStage::kSplat, "bin"});
     recordBinned(recording);
     commands.beginPass({role, FrameStage::kSplat, "sort_tiles"});
-    const KeyValues sorted = kernels.recordSort(commands, targets.pairs.pairs, targets.pairs.spare, recording.sums(), buffers.state,
-                                                recording.field(offsetof(TargetState, pairs)), tileBits(targets.all_tiles));
+    const KeyValues sorted = kernels.recordSort(
+        commands, targets.pairs.pairs, targets.pairs.spare, recording.sums(), buffers.state,
+        recording.field(offsetof(TargetState, pairs)), tileBits(targets.all_tiles));
     recordTileRanges(recording, sorted);
     commands.beginPass({role, FrameStage::kSplat, "rasterize"});
     recordRasterized(recording, sorted);

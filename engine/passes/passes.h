@@ -69,18 +69,20 @@ struct EyesOfList {
 };
 
 // `by_lanes`: only if PassKernels::cellsAreNarrow.
-ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_shape, bool fits, bool by_lanes);
-RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse);
+ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_shape, bool fits,
+                                  bool by_lanes);
+RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape,
+                                bool masked, bool coarse);
 
 // Only cull: how many splats are visible.
-void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                Role role);
+void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
+                const EyesOfList& eyes, Role role);
 // The list of these, front to back: compact and sort_depth. Also again, by the depths of another eye;
 // visibility is then not determined again.
-void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                 Role role);
+void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
+                 const EyesOfList& eyes, Role role);
 // The pictures: project to rasterize.
-void recordPictures(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets,
-                    Role role);
+void recordPictures(PassKernels& kernels, Commands& commands, const GpuScene& scene,
+                    const FrameBuffers& buffers, const Targets& targets, Role role);
 
 }  // namespace binosplat

@@ -11,8 +11,8 @@ KernelTable presentKernels() { return everyVariantOf<PresentKernel, TurnKernel>(
 
 bool Presenter::takes(vk::Format format) {
     using Format = vk::Format;
-    return format == Format::eR8G8B8A8Srgb || format == Format::eB8G8R8A8Srgb || format == Format::eR8G8B8A8Unorm ||
-           format == Format::eB8G8R8A8Unorm;
+    return format == Format::eR8G8B8A8Srgb || format == Format::eB8G8R8A8Srgb ||
+           format == Format::eR8G8B8A8Unorm || format == Format::eB8G8R8A8Unorm;
 }
 
 Presenter::Presenter(const Context& context, vk::Format format)
@@ -59,13 +59,16 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.see_through = eye.see_through ? 1 : 0;
     pass.kept_bits = eye.kept_bits;
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
-    commands.dispatch(kernels_.get(PresentKernel{.half_colours = eye.picture->half_floats}), pass, (eye.size_px.x + 15) / 16,
-                      (eye.size_px.y + 7) / 8);
+    commands.dispatch(kernels_.get(PresentKernel{.half_colours = eye.picture->half_floats}), pass,
+                      (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
-    if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
+    if (with_depth) {
+        commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth);
+    }
 }
 
-const Buffer& Presenter::turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px, const glm::dmat3& picture_from_view) {
+const Buffer& Presenter::turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px,
+                              const glm::dmat3& picture_from_view) {
     const std::uint64_t bytes = sizeof(gpu::uint) * view_px.x * view_px.y;
     if (turned_.bytes() < bytes) { turned_ = Buffer(context_, "turned pixels", bytes); }
     const glm::mat3 matrix(picture_from_view);

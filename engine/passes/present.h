@@ -45,7 +45,8 @@ public:
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
     // The same as a view from the same place with other axes shows them. The matrix maps places in the view,
     // in pixels, to those in the picture. Allocates memory first; only the first of a submission may need to.
-    const Buffer& turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px, const glm::dmat3& picture_from_view);
+    const Buffer& turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px,
+                       const glm::dmat3& picture_from_view);
 
 private:
     const Context& context_;

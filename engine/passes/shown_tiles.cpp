@@ -27,14 +27,17 @@ void ShownTiles::record(Commands& commands) {
     const std::uint64_t bytes = words_.size() * sizeof(gpu::uint);
     // Frames before the last one have finished.
     retired_ = {};
-    if (mask.bytes() != bytes) { retired_ = std::exchange(mask, bytes > 0 ? Buffer(context_, "shown tiles", bytes) : Buffer()); }
+    if (mask.bytes() != bytes) {
+        retired_ = std::exchange(mask, bytes > 0 ? Buffer(context_, "shown tiles", bytes) : Buffer());
+    }
     if (bytes > 0) { commands.update(mask, words_.data(), bytes); }
 }
 
 void ShownTiles::recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const {
     if (!hideAny()) { return; }
     std::vector<gpu::uint> words(hidden_.size());
-    std::ranges::transform(hidden_, words.begin(), [](std::uint8_t hidden) { return hidden == 0 ? 0u : gpu::kTileHidden; });
+    std::ranges::transform(hidden_, words.begin(),
+                           [](std::uint8_t hidden) { return hidden == 0 ? 0u : gpu::kTileHidden; });
     commands.update(kinds, words.data(), words.size() * sizeof(gpu::uint), offset_bytes);
 }
 

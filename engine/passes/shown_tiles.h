@@ -25,7 +25,9 @@ public:
     // The shown tiles, as in shaders/lib/tile_mask.glsl. Null if none is hidden.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> mask() const { return masks_[turn_].address<gpu::uint>(); }
     // Those of the frame before.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> maskBefore() const { return masks_[1 - turn_].address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> maskBefore() const {
+        return masks_[1 - turn_].address<gpu::uint>();
+    }
     // Writes kTileHidden, or 0, into an array of tile kinds that begins `offset_bytes` into `kinds`.
     void recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const;
 

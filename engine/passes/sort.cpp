@@ -16,10 +16,12 @@ namespace {
 // four.
 gpu::uint threadsOf(const Context& context) {
     if (context.isSoftware()) {
-        return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, std::min(8 * context.minSubgroupSize(), 128u));
+        return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u,
+                          std::min(8 * context.minSubgroupSize(), 128u));
     }
     const gpu::uint most_subgroups = context.sharedMemory() >= 49152 ? 16 : 8;
-    return std::min({512u, most_subgroups * context.minSubgroupSize(), std::bit_floor(context.maxGroupInvocations())});
+    return std::min(
+        {512u, most_subgroups * context.minSubgroupSize(), std::bit_floor(context.maxGroupInvocations())});
 }
 
 gpu::uint comparedLanes(const Context& context, DigitMatch match) {
@@ -40,13 +42,16 @@ Sort::Sort(const Context& context, DigitMatch match)
                .compared_lanes = comparedLanes(context, match)} {}
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
-    const std::uint64_t blocks = std::min<std::uint64_t>((items + gpu::kSortBlock - 1) / gpu::kSortBlock, gpu::kMaxSortBlocks);
+    const std::uint64_t blocks =
+        std::min<std::uint64_t>((items + gpu::kSortBlock - 1) / gpu::kSortBlock, gpu::kMaxSortBlocks);
     return (1 + gpu::kMaxSortRuns + blocks) * gpu::kMaxDigits * sizeof(gpu::uint);
 }
 
-KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms,
-                       const Buffer& lists, std::uint64_t list_bytes, unsigned key_bits) const {
-    const auto run_sums = histograms.at(gpu::kMaxDigits), counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
+KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare,
+                       gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
+                       std::uint64_t list_bytes, unsigned key_bits) const {
+    const auto run_sums = histograms.at(gpu::kMaxDigits),
+               counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
     // As few bits a round as possible.
@@ -54,12 +59,13 @@ KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, K
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;
-        commands.dispatchIndirect(kernels.get(count_), gpu::SortCountPass{in.keys, counts, run_sums, histograms, list, shift, digits},
-                                  lists, groups);
         commands.dispatchIndirect(
-            kernels.get(scatter_),
-            gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, run_sums, histograms, list, shift, digits}, lists,
-            groups);
+            kernels.get(count_),
+            gpu::SortCountPass{in.keys, counts, run_sums, histograms, list, shift, digits}, lists, groups);
+        commands.dispatchIndirect(kernels.get(scatter_),
+                                  gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts,
+                                                       run_sums, histograms, list, shift, digits},
+                                  lists, groups);
         std::swap(in, spare);
         shift += bits;
     }

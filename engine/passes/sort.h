@@ -34,11 +34,14 @@ public:
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns
     // whichever of the two holds the result. The length is that of the list at `list_bytes` of `lists`, whose
     // count of workgroups is used.
-    KeyValues record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms,
-                     const Buffer& lists, std::uint64_t list_bytes, unsigned key_bits) const;
+    KeyValues record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare,
+                     gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists, std::uint64_t list_bytes,
+                     unsigned key_bits) const;
 
 private:
-    static constexpr unsigned roundsOf(unsigned key_bits) { return (key_bits + gpu::kMaxDigitBits - 1) / gpu::kMaxDigitBits; }
+    static constexpr unsigned roundsOf(unsigned key_bits) {
+        return (key_bits + gpu::kMaxDigitBits - 1) / gpu::kMaxDigitBits;
+    }
 
     SortCountKernel count_;
     SortScatterKernel scatter_;

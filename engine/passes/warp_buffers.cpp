@@ -5,7 +5,9 @@
 
 namespace binosplat {
 
-std::uint32_t mostRowSteps(const Context& context) { return context.sharedMemory() >= 32768 ? gpu::kMostRowSteps : 1; }
+std::uint32_t mostRowSteps(const Context& context) {
+    return context.sharedMemory() >= 32768 ? gpu::kMostRowSteps : 1;
+}
 
 std::uint64_t WarpBuffers::maskWords(glm::uvec2 size_px) {
     const glm::uvec2 tiles = tilesOf(size_px);
@@ -15,15 +17,22 @@ std::uint64_t WarpBuffers::maskWords(glm::uvec2 size_px) {
 WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     : needs_(needs), longest_shared_row_(mostRowSteps(context) * gpu::kArrivalsStep) {
     if (needs.size_px.x == 0) { return; }
-    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.size_px) + std::max(gpu::kPriceBins, gpu::kDepthBins);
+    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.size_px) +
+                                std::max(gpu::kPriceBins, gpu::kDepthBins);
     tiles_ = Buffer(context, "warp tiles", words * sizeof(gpu::uint));
-    if (needs.classes) { classes_ = Buffer(context, "pixel classes", std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint)); }
+    if (needs.classes) {
+        classes_ = Buffer(context, "pixel classes",
+                          std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint));
+    }
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
     if (needs.history) {
-        const glm::uvec2 block{gpu::kHistoryColumns, gpu::kHistoryRows}, blocks = (needs.size_px + block - 1u) / block;
-        history_blocks_ = Buffer(context, "blocks of the history", std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::HistoryBlock));
+        const glm::uvec2 block{gpu::kHistoryColumns, gpu::kHistoryRows},
+            blocks = (needs.size_px + block - 1u) / block;
+        history_blocks_ = Buffer(context, "blocks of the history",
+                                 std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::HistoryBlock));
     } else if (!sharesRows()) {
-        planes_ = Buffer(context, "reprojected pixels", 2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
+        planes_ = Buffer(context, "reprojected pixels",
+                         2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
     }
 }
 

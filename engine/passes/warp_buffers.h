@@ -32,7 +32,9 @@ public:
     [[nodiscard]] std::uint32_t tileCount() const { return sizeTiles().x * sizeTiles().y; }
 
     [[nodiscard]] const Buffer& tiles() const { return tiles_; }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileKinds() const { return tiles_.address<gpu::uint>(tileKindsOffset()); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileKinds() const {
+        return tiles_.address<gpu::uint>(tileKindsOffset());
+    }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tileArray(1); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCosts() const { return tileArray(2); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
@@ -45,13 +47,17 @@ public:
     // Where these lie.
     void tell(gpu::TargetState& target) const;
     // The price list, or the counts of depths.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const { return tileMask().at(maskWords(needs_.size_px)); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const {
+        return tileMask().at(maskWords(needs_.size_px));
+    }
     [[nodiscard]] static std::uint64_t tileKindsOffset() { return 0; }
     // Words of a mask of tiles: one bit each, each row begins a new word.
     static std::uint64_t maskWords(glm::uvec2 size_px);
 
     // The blocks that are made pixel by pixel.
-    [[nodiscard]] gpu::DeviceAddress<gpu::HistoryBlock> historyBlocks() const { return history_blocks_.address<gpu::HistoryBlock>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::HistoryBlock> historyBlocks() const {
+        return history_blocks_.address<gpu::HistoryBlock>();
+    }
     [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
     // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
     [[nodiscard]] const Buffer& classesBuffer() const { return classes_; }
@@ -59,7 +65,9 @@ public:
 
     // Moving pixels and arrivals: where the first rows begin, and the number of words from a row to the next.
     [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= longest_shared_row_; }
-    [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
+    [[nodiscard]] gpu::uint rowWords() const {
+        return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x;
+    }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const Picture& target) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const Picture& target) const;
     // How many kArrivalsStep a row takes in shared memory, see resample; 0: rows are not kept there.
@@ -72,7 +80,9 @@ public:
     }
 
 private:
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileArray(std::uint64_t i) const { return tileKinds().at(i * tileCount()); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileArray(std::uint64_t i) const {
+        return tileKinds().at(i * tileCount());
+    }
 
     WarpBufferNeeds needs_;
     std::uint32_t longest_shared_row_ = 0;

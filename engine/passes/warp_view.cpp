@@ -8,7 +8,8 @@
 
 namespace binosplat {
 
-gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings) {
+gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words,
+                         const StereoSettings& settings) {
     return {.target_from_source = relation.target_from_source,
             .source_from_target = relation.source_from_target,
             .size_px = size_px,
@@ -23,7 +24,9 @@ gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::u
             .budget = static_cast<float>(settings.budget),
             .hole_error = static_cast<float>(settings.hole_error),
             .newcomer_error = static_cast<float>(settings.newcomer_error),
-            .error_bound = settings.error_bound_db > 0.0 ? static_cast<float>(std::pow(10.0, -0.05 * settings.error_bound_db)) : 0.0f};
+            .error_bound = settings.error_bound_db > 0.0
+                               ? static_cast<float>(std::pow(10.0, -0.05 * settings.error_bound_db))
+                               : 0.0f};
 }
 
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px) {

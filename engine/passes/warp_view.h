@@ -15,7 +15,8 @@ struct Gaze {
 };
 
 // `settings` and the eyes, for the device. `row_words`: of a row of moving pixels, see WarpBuffers.
-gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
+gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words,
+                         const StereoSettings& settings);
 // Initial counters of a frame: modes that do not weigh reproject everything.
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 

@@ -29,11 +29,13 @@ const char* extensionOf(PictureKind kind) {
 
 std::vector<fs::path> writePicture(const fs::path& stem, PictureKind kind, const Image& image) {
     const fs::path path = withExtension(stem, extensionOf(kind));
-    const bool fits = image.channels == 4 || image.channels == 3 || (image.channels == 1 && kind == PictureKind::kFloat);
+    const bool fits =
+        image.channels == 4 || image.channels == 3 || (image.channels == 1 && kind == PictureKind::kFloat);
     check(fits, "{}: image has {} channels, must be 3 or 4, or 1 for floats", path.string(), image.channels);
-    check(image.pixelCount() > 0 && image.values.size() == image.pixelCount() * static_cast<std::size_t>(image.channels),
-          "{}: image has {} values, must be {} x {} x {}", path.string(), image.values.size(), image.size_px.x, image.size_px.y,
-          image.channels);
+    check(image.pixelCount() > 0 &&
+              image.values.size() == image.pixelCount() * static_cast<std::size_t>(image.channels),
+          "{}: image has {} values, must be {} x {} x {}", path.string(), image.values.size(),
+          image.size_px.x, image.size_px.y, image.channels);
     const Image rgb = image.channels == 4 ? selectChannels(image, 0, 3) : Image{};
     const Image& opaque = image.channels == 4 ? rgb : image;
     if (hasPngAndExr()) {
@@ -65,7 +67,9 @@ Image readPicture(const fs::path& path) {
     const File file = openRegularFile(path, reason);
     check(file != nullptr, "{}: cannot be read ({}), must be an image file", path.string(), reason);
     std::array<char, kLfsPointerStart.size()> start{};
-    requireNoLfsPointer({start.data(), readAt(file.get(), 0, std::as_writable_bytes(std::span(start))).value_or(0)}, path.string());
+    requireNoLfsPointer(
+        {start.data(), readAt(file.get(), 0, std::as_writable_bytes(std::span(start))).value_or(0)},
+        path.string());
     if (path.extension() == ".pfm") { return readPfm(path); }
     if (path.extension() == ".ppm" || path.extension() == ".pgm") { return readPnm(path); }
     return readPictureFile(path, file.get());

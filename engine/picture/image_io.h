@@ -21,7 +21,8 @@ const char* extensionOf(PictureKind kind);
 // Writes `stem` + extension. Float pictures have 4 channels (R, G, B, A), 3 (R, G, B) or 1, called D (depth);
 // display pictures 3 or 4. PFM has no fourth channel: A goes to a separate file `stem`_alpha.pfm. Returns the
 // files written. Throws Error naming the file.
-std::vector<std::filesystem::path> writePicture(const std::filesystem::path& stem, PictureKind kind, const Image& image);
+std::vector<std::filesystem::path> writePicture(const std::filesystem::path& stem, PictureKind kind,
+                                                const Image& image);
 
 // A display picture as `stem`.jpg, the only format that some galleries take. Empty: this build cannot write
 // it.

@@ -51,7 +51,8 @@ std::string filmBoxes(const FilmTags& tags) {
         const std::string side = bigEndian(static_cast<std::uint32_t>(std::llround(cropped * 4294967296.0)));
         const std::string level(12, '\0'), none(4, '\0');
         boxes += box("sv3d", box("svhd", plain + "binosplat"s + '\0') +
-                                 box("proj", box("prhd", plain + level) + box("equi", plain + none + none + side + side)));
+                                 box("proj", box("prhd", plain + level) +
+                                                 box("equi", plain + none + none + side + side)));
     }
     return boxes;
 }
@@ -60,7 +61,8 @@ std::string filmBoxes(const FilmTags& tags) {
 std::size_t findBox(std::string_view bytes, std::string_view type, std::size_t begin, std::size_t end) {
     while (begin < end) {
         const std::uint32_t size = readBigEndian(bytes, begin);
-        check(size >= 8 && size <= end - begin, "a box of an MP4 has {} bytes, must have 8 to {}", size, end - begin);
+        check(size >= 8 && size <= end - begin, "a box of an MP4 has {} bytes, must have 8 to {}", size,
+              end - begin);
         if (bytes.substr(begin + 4, 4) == type) { return begin; }
         begin += size;
     }
@@ -71,13 +73,17 @@ std::size_t findBox(std::string_view bytes, std::string_view type, std::size_t b
 
 static std::string xmpOf(const Panorama& panorama) {
     const glm::uvec2 size = panorama.size_px;
-    const auto whole_width = static_cast<std::uint32_t>(std::lround(size.x * 2.0 * std::numbers::pi / panorama.width_rad));
+    const auto whole_width =
+        static_cast<std::uint32_t>(std::lround(size.x * 2.0 * std::numbers::pi / panorama.width_rad));
     return fmt::format(
-        "<?xpacket begin=\"\xef\xbb\xbf\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?><x:xmpmeta xmlns:x=\"adobe:ns:meta/\">"
+        "<?xpacket begin=\"\xef\xbb\xbf\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?><x:xmpmeta "
+        "xmlns:x=\"adobe:ns:meta/\">"
         "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description rdf:about=\"\" "
         "xmlns:GPano=\"http://ns.google.com/photos/1.0/panorama/\" GPano:ProjectionType=\"equirectangular\" "
-        "GPano:UsePanoramaViewer=\"True\" GPano:CroppedAreaImageWidthPixels=\"{}\" GPano:CroppedAreaImageHeightPixels=\"{}\" "
-        "GPano:FullPanoWidthPixels=\"{}\" GPano:FullPanoHeightPixels=\"{}\" GPano:CroppedAreaLeftPixels=\"{}\" "
+        "GPano:UsePanoramaViewer=\"True\" GPano:CroppedAreaImageWidthPixels=\"{}\" "
+        "GPano:CroppedAreaImageHeightPixels=\"{}\" "
+        "GPano:FullPanoWidthPixels=\"{}\" GPano:FullPanoHeightPixels=\"{}\" "
+        "GPano:CroppedAreaLeftPixels=\"{}\" "
         "GPano:CroppedAreaTopPixels=\"0\"/></rdf:RDF></x:xmpmeta><?xpacket end=\"r\"?>",
         size.x, size.y, whole_width, size.y, (whole_width - size.x) / 2);
 }
@@ -95,8 +101,8 @@ std::string withPanoramaTags(const std::string& file, const Panorama& panorama) 
     // Not compressed, without a language.
     const std::string chunk = "iTXt"s + "XML:com.adobe.xmp" + std::string(5, '\0') + xmp;
     constexpr std::size_t kHeader = 8 + 25;  // the signature, and the chunk IHDR
-    return file.substr(0, kHeader) + bigEndian(static_cast<std::uint32_t>(chunk.size() - 4)) + chunk + bigEndian(checksum(chunk)) +
-           file.substr(kHeader);
+    return file.substr(0, kHeader) + bigEndian(static_cast<std::uint32_t>(chunk.size() - 4)) + chunk +
+           bigEndian(checksum(chunk)) + file.substr(kHeader);
 }
 
 std::string withFilmTags(const std::string& moov, const FilmTags& tags) {
@@ -120,7 +126,8 @@ std::string withFilmTags(const std::string& moov, const FilmTags& tags) {
     check(place <= end, "an MP4's description of its pictures ends too soon");
     tagged.insert(place, boxes);
     for (const std::size_t start : around) {
-        tagged.replace(start, 4, bigEndian(readBigEndian(moov, start) + static_cast<std::uint32_t>(boxes.size())));
+        tagged.replace(start, 4,
+                       bigEndian(readBigEndian(moov, start) + static_cast<std::uint32_t>(boxes.size())));
     }
     return tagged;
 }

@@ -52,7 +52,8 @@ void requireSize(const fs::path& path, std::uint64_t width, std::uint64_t height
     constexpr std::uint64_t kMostSide = std::uint64_t{1} << 30;  // two of them can be multiplied
     const bool fits = width > 0 && height > 0 && channels > 0 && width <= kMostSide && height <= kMostSide &&
                       width * height <= kMostPictureValues / channels;
-    check(fits, "{}: has {}x{} pixels of {} channels, must be a flat picture of up to 2^30 values", path.string(), width, height, channels);
+    check(fits, "{}: has {}x{} pixels of {} channels, must be a flat picture of up to 2^30 values",
+          path.string(), width, height, channels);
 }
 
 // OpenEXR finishes a file in a destructor, which cannot report errors, so check for a full disk afterwards.
@@ -96,15 +97,20 @@ private:
 // Where the values of one channel are. OpenEXR counts from pixel (0,0), which may be outside its window.
 Imf::Slice sliceOf(float* first, std::size_t channels, const Imath::Box2i& window) {
     const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
-    return Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(float) * channels, sizeof(float) * channels * width);
+    return Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(float) * channels,
+                            sizeof(float) * channels * width);
 }
 
 // Colours first, in the usual order; a file has its channels in alphabetical order.
 std::vector<std::string> channelsOf(const Imf::Header& header) {
     std::vector<std::string> names;
-    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) { names.emplace_back(channel.name()); }
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+        names.emplace_back(channel.name());
+    }
     constexpr std::string_view kOrder = "RGBA";
-    std::ranges::stable_sort(names, {}, [&](const std::string& name) { return name.size() == 1 ? kOrder.find(name) : kOrder.npos; });
+    std::ranges::stable_sort(names, {}, [&](const std::string& name) {
+        return name.size() == 1 ? kOrder.find(name) : kOrder.npos;
+    });
     return names;
 }
 
@@ -114,13 +120,18 @@ Image readExr(const fs::path& path) {
         Imf::InputFile file(stream);
         const Imath::Box2i window = file.header().dataWindow();
         const std::vector<std::string> names = channelsOf(file.header());
-        const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1, height = std::int64_t{window.max.y} - window.min.y + 1;
+        const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
+                           height = std::int64_t{window.max.y} - window.min.y + 1;
         requireSize(path, static_cast<std::uint64_t>(std::max<std::int64_t>(width, 0)),
                     static_cast<std::uint64_t>(std::max<std::int64_t>(height, 0)), names.size());
-        Image image{{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}, static_cast<int>(names.size()), {}};
+        Image image{{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)},
+                    static_cast<int>(names.size()),
+                    {}};
         image.values.resize(image.pixelCount() * names.size());
         Imf::FrameBuffer target;
-        for (std::size_t i = 0; i < names.size(); ++i) { target.insert(names[i], sliceOf(image.values.data() + i, names.size(), window)); }
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            target.insert(names[i], sliceOf(image.values.data() + i, names.size(), window));
+        }
         file.setFrameBuffer(target);
         file.readPixels(window.min.y, window.max.y);
         return image;
@@ -171,7 +182,8 @@ Image readPng(const fs::path& path, std::FILE* file) {
     PngReader reader;
     check(reader.info != nullptr, "{}: cannot be read (no memory)", path.string());
     check(reader.readHeader(file), "{}: cannot be read ({})", path.string(), oneLine(reader.complaint));
-    const png_uint_32 width = png_get_image_width(reader.png, reader.info), height = png_get_image_height(reader.png, reader.info);
+    const png_uint_32 width = png_get_image_width(reader.png, reader.info),
+                      height = png_get_image_height(reader.png, reader.info);
     const int channels = png_get_channels(reader.png, reader.info);
     const bool is_wide = png_get_bit_depth(reader.png, reader.info) == 16;
     requireSize(path, width, height, static_cast<std::uint64_t>(channels));
@@ -183,8 +195,8 @@ Image readPng(const fs::path& path, std::FILE* file) {
     Image image{{width, height}, channels, {}};
     image.values.resize(image.pixelCount() * static_cast<std::size_t>(channels));
     for (std::size_t i = 0; i < image.values.size(); ++i) {
-        image.values[i] =
-            is_wide ? static_cast<float>(bytes[2 * i] * 256 + bytes[2 * i + 1]) / 65535.0f : static_cast<float>(bytes[i]) / 255.0f;
+        image.values[i] = is_wide ? static_cast<float>(bytes[2 * i] * 256 + bytes[2 * i + 1]) / 65535.0f
+                                  : static_cast<float>(bytes[i]) / 255.0f;
     }
     return image;
 }
@@ -197,7 +209,8 @@ bool hasPngAndExr() { return true; }
 
 void writeExr(const fs::path& path, const Image& image) {
     const auto channels = static_cast<std::size_t>(image.channels);
-    const Imath::Box2i window({0, 0}, {static_cast<int>(image.size_px.x) - 1, static_cast<int>(image.size_px.y) - 1});
+    const Imath::Box2i window({0, 0},
+                              {static_cast<int>(image.size_px.x) - 1, static_cast<int>(image.size_px.y) - 1});
     try {
         ExrOutput stream(path);
         if (!stream.isOpen()) { fail("{}: cannot be written ({})", path.string(), std::strerror(errno)); }
@@ -230,7 +243,8 @@ void writePng(const fs::path& path, const Image& rgb) {
     image.format = PNG_FORMAT_RGB;
     std::vector<char> bytes(PNG_IMAGE_PNG_SIZE_MAX(image));
     png_alloc_size_t size = bytes.size();
-    const bool packed = png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) != 0;
+    const bool packed =
+        png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) != 0;
     check(packed, "{}: cannot be written ({})", path.string(), oneLine(image.message));
     std::ofstream file(path, std::ios::binary);
     check(file.is_open(), "{}: cannot be written ({})", path.string(), std::strerror(errno));
@@ -243,9 +257,14 @@ Image readPictureFile(const fs::path& path, std::FILE* file) {
     std::array<png_byte, 8> start{};
     const std::size_t read = std::fread(start.data(), 1, start.size(), file);
     std::rewind(file);
-    if (read == start.size() && png_sig_cmp(start.data(), 0, start.size()) == 0) { return readPng(path, file); }
-    if (read >= 4 && start[0] == 0x76 && start[1] == 0x2f && start[2] == 0x31 && start[3] == 0x01) { return readExr(path); }
-    fail("{}: cannot be read in a build without OpenImageIO, must be PNG, EXR, .pfm, .ppm or .pgm", path.string());
+    if (read == start.size() && png_sig_cmp(start.data(), 0, start.size()) == 0) {
+        return readPng(path, file);
+    }
+    if (read >= 4 && start[0] == 0x76 && start[1] == 0x2f && start[2] == 0x31 && start[3] == 0x01) {
+        return readExr(path);
+    }
+    fail("{}: cannot be read in a build without OpenImageIO, must be PNG, EXR, .pfm, .ppm or .pgm",
+         path.string());
 }
 
 }  // namespace binosplat

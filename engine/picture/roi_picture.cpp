@@ -45,11 +45,14 @@ PixelOrigin originOfClass(std::uint8_t pixel_class) {
 std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::uint32_t> tile_kinds,
                                        std::span<const std::uint8_t> pixel_classes) {
     const glm::uvec2 tiles = (size_px + gpu::kTileSize - 1u) / gpu::kTileSize;
-    const std::size_t tile_count = std::size_t{tiles.x} * tiles.y, pixel_count = std::size_t{size_px.x} * size_px.y;
-    check(tile_kinds.empty() || tile_kinds.size() == tile_count, "{} tile kinds for a picture of {}x{} pixels, must be {}",
-          tile_kinds.size(), size_px.x, size_px.y, tile_count);
-    check(pixel_classes.empty() || pixel_classes.size() == pixel_count, "{} pixel classes for a picture of {}x{} pixels, must be {}",
-          pixel_classes.size(), size_px.x, size_px.y, pixel_count);
+    const std::size_t tile_count = std::size_t{tiles.x} * tiles.y,
+                      pixel_count = std::size_t{size_px.x} * size_px.y;
+    check(tile_kinds.empty() || tile_kinds.size() == tile_count,
+          "{} tile kinds for a picture of {}x{} pixels, must be {}", tile_kinds.size(), size_px.x, size_px.y,
+          tile_count);
+    check(pixel_classes.empty() || pixel_classes.size() == pixel_count,
+          "{} pixel classes for a picture of {}x{} pixels, must be {}", pixel_classes.size(), size_px.x,
+          size_px.y, pixel_count);
     std::vector<std::uint8_t> origins(pixel_count, static_cast<std::uint8_t>(PixelOrigin::kReprojected));
     std::size_t pixel = 0;
     for (std::uint32_t y = 0; y < size_px.y; ++y) {
@@ -85,8 +88,10 @@ glm::vec3 tintOf(PixelOrigin origin) {
     return glm::vec3(0.0f);
 }
 
-Image makeRoiPicture(const Image& affiliated, std::span<const std::uint32_t> tile_kinds, std::span<const std::uint8_t> pixel_classes) {
-    check(affiliated.channels >= 3, "the affiliated picture has {} channels, must have 3 or more", affiliated.channels);
+Image makeRoiPicture(const Image& affiliated, std::span<const std::uint32_t> tile_kinds,
+                     std::span<const std::uint8_t> pixel_classes) {
+    check(affiliated.channels >= 3, "the affiliated picture has {} channels, must have 3 or more",
+          affiliated.channels);
     const std::vector<std::uint8_t> origins = pixelOrigins(affiliated.size_px, tile_kinds, pixel_classes);
     Image tinted{affiliated.size_px, 3, std::vector<float>(affiliated.pixelCount() * 3)};
     for (std::size_t pixel = 0; pixel < origins.size(); ++pixel) {
@@ -97,7 +102,8 @@ Image makeRoiPicture(const Image& affiliated, std::span<const std::uint32_t> til
         for (int channel = 0; channel < 3; ++channel) {
             // A pixel brighter than the display must not drown its tint.
             const float shown = std::clamp(from[channel], 0.0f, 1.0f);
-            tinted.values[pixel * 3 + static_cast<std::size_t>(channel)] = (1.0f - share) * shown + share * tint[channel];
+            tinted.values[pixel * 3 + static_cast<std::size_t>(channel)] =
+                (1.0f - share) * shown + share * tint[channel];
         }
     }
     return tinted;

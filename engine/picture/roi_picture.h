@@ -38,6 +38,7 @@ inline constexpr float kTintShare = 0.4f;
 
 // The picture (3 channels or more, display-encoded) with every pixel that was not reprojected tinted by its
 // origin: 3 channels. Throws Error as pixelOrigins does.
-Image makeRoiPicture(const Image& affiliated, std::span<const std::uint32_t> tile_kinds, std::span<const std::uint8_t> pixel_classes);
+Image makeRoiPicture(const Image& affiliated, std::span<const std::uint32_t> tile_kinds,
+                     std::span<const std::uint8_t> pixel_classes);
 
 }  // namespace binosplat

@@ -17,7 +17,9 @@ namespace {
 
 std::uint32_t loadWord(std::span<const std::byte> bytes, std::size_t offset) {
     std::uint32_t word = 0;
-    for (std::size_t i = 4; i-- > 0;) { word = word << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]); }
+    for (std::size_t i = 4; i-- > 0;) {
+        word = word << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
+    }
     return word;
 }
 
@@ -28,17 +30,21 @@ constexpr std::size_t kStreamHeaderBytes = 5;
 // The chunk VP8L of a file, alone or among others.
 std::span<const std::byte> findStream(std::span<const std::byte> file, const std::string& name) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
-    check(file.size() >= 12 && text.starts_with("RIFF") && text.substr(8, 4) == "WEBP", "{}: not a WebP file, expected one", name);
+    check(file.size() >= 12 && text.starts_with("RIFF") && text.substr(8, 4) == "WEBP",
+          "{}: not a WebP file, expected one", name);
     for (std::uint64_t at = 12; file.size() >= 8 && at <= file.size() - 8;) {
         const std::string_view kind = text.substr(at, 4);
         const std::uint64_t bytes = loadWord(file, at + 4);
         at += 8;
         if (kind == "VP8L") {
-            check(bytes <= file.size() - at, "{}: ends after {} of {} bytes of its picture", name, file.size() - at, bytes);
-            check(bytes > kStreamHeaderBytes && file[at] == std::byte{0x2f}, "{}: a WebP file without a picture, expected one", name);
+            check(bytes <= file.size() - at, "{}: ends after {} of {} bytes of its picture", name,
+                  file.size() - at, bytes);
+            check(bytes > kStreamHeaderBytes && file[at] == std::byte{0x2f},
+                  "{}: a WebP file without a picture, expected one", name);
             return file.subspan(at, bytes);
         }
-        check(kind != "VP8 " && kind != "ANIM", "{}: a lossy or moving WebP picture, expected a lossless one", name);
+        check(kind != "VP8 " && kind != "ANIM", "{}: a lossy or moving WebP picture, expected a lossless one",
+              name);
         at += bytes + bytes % 2;
     }
     fail("{}: a WebP file without a lossless picture, expected one", name);
@@ -51,7 +57,9 @@ glm::uvec2 streamSize(std::span<const std::byte> stream) {
 
 }  // namespace
 
-glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name) { return streamSize(findStream(file, name)); }
+glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name) {
+    return streamSize(findStream(file, name));
+}
 
 #ifdef BINOSPLAT_SOG
 
@@ -64,7 +72,8 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name) {
     Pixels pixels{size_px, std::vector<std::uint8_t>(stride * size_px.y)};
     // A bare stream counts as a file for libwebp, too.
     const auto* begin = reinterpret_cast<const std::uint8_t*>(stream.data());
-    check(WebPDecodeRGBAInto(begin, stream.size(), pixels.rgba.data(), pixels.rgba.size(), static_cast<int>(stride)) != nullptr,
+    check(WebPDecodeRGBAInto(begin, stream.size(), pixels.rgba.data(), pixels.rgba.size(),
+                             static_cast<int>(stride)) != nullptr,
           "{}: cannot be decoded, its picture is damaged", name);
     return pixels;
 }
@@ -86,11 +95,12 @@ struct WebpMemory {
 }  // namespace
 
 std::vector<std::byte> encodeWebp(const Pixels& pixels, const std::string& name) {
-    assert(pixels.size_px.x >= 1 && pixels.size_px.x <= kMaxWebpSide && pixels.size_px.y >= 1 && pixels.size_px.y <= kMaxWebpSide);
+    assert(pixels.size_px.x >= 1 && pixels.size_px.x <= kMaxWebpSide && pixels.size_px.y >= 1 &&
+           pixels.size_px.y <= kMaxWebpSide);
     WebPConfig config;
     WebpMemory memory;
-    const bool fits =
-        WebPConfigInit(&config) != 0 && WebPConfigLosslessPreset(&config, kEffort) != 0 && WebPPictureInit(&memory.picture) != 0;
+    const bool fits = WebPConfigInit(&config) != 0 && WebPConfigLosslessPreset(&config, kEffort) != 0 &&
+                      WebPPictureInit(&memory.picture) != 0;
     check(fits, "{}: libwebp has another version than it was built for", name);
     config.exact = 1;  // colours under alpha 0 are data, too
     WebPMemoryWriterInit(&memory.writer);
@@ -99,9 +109,11 @@ std::vector<std::byte> encodeWebp(const Pixels& pixels, const std::string& name)
     memory.picture.height = static_cast<int>(pixels.size_px.y);
     memory.picture.writer = WebPMemoryWrite;
     memory.picture.custom_ptr = &memory.writer;
-    const bool encoded = WebPPictureImportRGBA(&memory.picture, pixels.rgba.data(), 4 * memory.picture.width) != 0 &&
-                         WebPEncode(&config, &memory.picture) != 0;
-    check(encoded, "{}: cannot be encoded (libwebp's error {})", name, static_cast<int>(memory.picture.error_code));
+    const bool encoded =
+        WebPPictureImportRGBA(&memory.picture, pixels.rgba.data(), 4 * memory.picture.width) != 0 &&
+        WebPEncode(&config, &memory.picture) != 0;
+    check(encoded, "{}: cannot be encoded (libwebp's error {})", name,
+          static_cast<int>(memory.picture.error_code));
     const auto* begin = reinterpret_cast<const std::byte*>(memory.writer.mem);
     return {begin, begin + memory.writer.size};
 }

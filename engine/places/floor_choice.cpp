@@ -43,8 +43,10 @@ struct Seen {
     bool is_floor;
 };
 
-std::vector<Seen> lookAlong(const std::vector<SplatSample>& samples, const FloorPlane& plane, double& facing) {
-    const glm::dvec3 across = std::abs(plane.up.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+std::vector<Seen> lookAlong(const std::vector<SplatSample>& samples, const FloorPlane& plane,
+                            double& facing) {
+    const glm::dvec3 across =
+        std::abs(plane.up.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
     const glm::dvec3 u = glm::normalize(glm::cross(plane.up, across)), v = glm::cross(plane.up, u);
     std::vector<Seen> seen;
     std::size_t facing_count = 0, floor_count = 0;
@@ -77,17 +79,22 @@ Rating rate(const std::vector<SplatSample>& samples, const FloorPlane& plane) {
     const auto ofFloor = [](double Seen::*along) {
         return [along](const Seen& one) { return one.is_floor ? std::optional(one.*along) : std::nullopt; };
     };
-    const double middle_u = quantileOf(seen, 0.5, ofFloor(&Seen::u)), middle_v = quantileOf(seen, 0.5, ofFloor(&Seen::v));
+    const double middle_u = quantileOf(seen, 0.5, ofFloor(&Seen::u)),
+                 middle_v = quantileOf(seen, 0.5, ofFloor(&Seen::v));
     const auto distanceOf = [&](const Seen& one) { return std::hypot(one.u - middle_u, one.v - middle_v); };
     const auto reachOf = [&](bool is_floor) {
-        return quantileOf(seen, 0.9,
-                          [&](const Seen& one) { return one.is_floor == is_floor ? std::optional(distanceOf(one)) : std::nullopt; });
+        return quantileOf(seen, 0.9, [&](const Seen& one) {
+            return one.is_floor == is_floor ? std::optional(distanceOf(one)) : std::nullopt;
+        });
     };
     const double rim = reachOf(false);
     rating.reach = reachOf(true) / std::max(rim, 1e-300);
-    const auto standing = [&](const Seen& one) { return one.h > 2.0 * plane.thickness ? std::optional(one.h) : std::nullopt; };
+    const auto standing = [&](const Seen& one) {
+        return one.h > 2.0 * plane.thickness ? std::optional(one.h) : std::nullopt;
+    };
     rating.height = quantileOf(seen, 0.95, standing);
-    rating.hovers = quantileOf(seen, 0.05, standing) > kHoversFrom * std::hypot(rating.height, 2.0 * std::max(rim, reachOf(true)));
+    rating.hovers = quantileOf(seen, 0.05, standing) >
+                    kHoversFrom * std::hypot(rating.height, 2.0 * std::max(rim, reachOf(true)));
 
     struct PlanCell {
         int all = 0, floor = 0;
@@ -96,16 +103,20 @@ Rating rate(const std::vector<SplatSample>& samples, const FloorPlane& plane) {
     const double side = 2.0 * std::max(rim, reachOf(true)) / kPlanCells;
     std::size_t inside = 0, low = 0;
     for (const Seen& one : seen) {
-        PlanCell& cell = cells[{static_cast<int>(std::floor(one.u / side)), static_cast<int>(std::floor(one.v / side))}];
+        PlanCell& cell =
+            cells[{static_cast<int>(std::floor(one.u / side)), static_cast<int>(std::floor(one.v / side))}];
         ++cell.all;
         cell.floor += one.is_floor;
-        if (one.h < 0.05 * rating.height || one.h > 0.95 * rating.height || distanceOf(one) > 0.85 * rim) { continue; }
+        if (one.h < 0.05 * rating.height || one.h > 0.95 * rating.height || distanceOf(one) > 0.85 * rim) {
+            continue;
+        }
         ++inside;
         low += one.h < 0.5 * rating.height;
     }
-    const auto filled = std::ranges::count_if(cells, [](const auto& cell) { return cell.second.all >= kFewInCell; });
-    const auto covered =
-        std::ranges::count_if(cells, [](const auto& cell) { return cell.second.all >= kFewInCell && cell.second.floor > 0; });
+    const auto filled =
+        std::ranges::count_if(cells, [](const auto& cell) { return cell.second.all >= kFewInCell; });
+    const auto covered = std::ranges::count_if(
+        cells, [](const auto& cell) { return cell.second.all >= kFewInCell && cell.second.floor > 0; });
     rating.covered = static_cast<double>(covered) / static_cast<double>(std::max<std::ptrdiff_t>(filled, 1));
     rating.breadth = side * std::sqrt(static_cast<double>(filled));
     if (inside >= kFewStanding) { rating.low = static_cast<double>(low) / static_cast<double>(inside); }
@@ -122,7 +133,8 @@ double scoreOf(const FloorPlane& plane, const Rating& rating) {
 }
 
 bool looksLikeFloor(const Rating& rating) {
-    return rating.covered >= kLeastCovered && (rating.facing >= kLeastFacing || rating.reach >= kReachesFar) && !rating.hovers;
+    return rating.covered >= kLeastCovered &&
+           (rating.facing >= kLeastFacing || rating.reach >= kReachesFar) && !rating.hovers;
 }
 
 bool isRelief(const Rating& rating) { return rating.height < kRelief * rating.breadth; }
@@ -147,7 +159,9 @@ std::optional<FloorPlane> chooseFloor(const std::vector<SplatSample>& samples, c
         double score;
         bool is_possible;
     };
-    const auto isUsual = [&](const Candidate& one) { return glm::dot(one.floor.up, hints.usual) >= kAboutCosine; };
+    const auto isUsual = [&](const Candidate& one) {
+        return glm::dot(one.floor.up, hints.usual) >= kAboutCosine;
+    };
     const auto isKnownNotToBe = [&](double along_usual) {
         return (hints.known == UpHints::Known::kDirection && along_usual < kAboutCosine) ||
                (hints.known == UpHints::Known::kAxis && std::abs(along_usual) < kAboutCosine);
@@ -159,27 +173,34 @@ std::optional<FloorPlane> chooseFloor(const std::vector<SplatSample>& samples, c
         const bool looks_like_one = looksLikeFloor(rating);
         if (!isKnownNotToBe(along_usual)) {
             const bool is_above = !hints.seen_from || glm::dot(plane.up, *hints.seen_from) > plane.height;
-            const bool may_be_wall = !hints.seen_from && glm::dot(plane.up, hints.front) > kAboutCosine && isRelief(rating);
-            const bool is_floor = (along_usual >= kTiltedCosine && !hints.is_doubtful) || (looks_like_one && !may_be_wall);
+            const bool may_be_wall =
+                !hints.seen_from && glm::dot(plane.up, hints.front) > kAboutCosine && isRelief(rating);
+            const bool is_floor =
+                (along_usual >= kTiltedCosine && !hints.is_doubtful) || (looks_like_one && !may_be_wall);
             candidates.push_back({plane, scoreOf(plane, rating), is_above && is_floor});
         }
         if (along_usual <= -kAboutCosine && !hints.seen_from) {
-            const FloorPlane ceiling{-plane.up, -plane.height, plane.thickness, plane.share, true, plane.behind};
+            const FloorPlane ceiling{-plane.up,   -plane.height, plane.thickness,
+                                     plane.share, true,          plane.behind};
             candidates.push_back({ceiling, scoreOf(ceiling, rating), looks_like_one});
         }
     }
     const Candidate *usual = nullptr, *other = nullptr;
     for (const Candidate& candidate : candidates) {
         const Candidate*& best = isUsual(candidate) ? usual : other;
-        if (candidate.is_possible && (best == nullptr || candidate.score > best->score)) { best = &candidate; }
+        if (candidate.is_possible && (best == nullptr || candidate.score > best->score)) {
+            best = &candidate;
+        }
     }
     const auto isBetter = [&](const Candidate& than) {
-        return glm::dot(other->floor.up, than.floor.up) > kOtherCosine || other->score >= kBetterThanOthers * than.score;
+        return glm::dot(other->floor.up, than.floor.up) > kOtherCosine ||
+               other->score >= kBetterThanOthers * than.score;
     };
     // Whichever is the usual up, cameras are above the ground.
     const bool is_better = hints.is_doubtful ? usual == nullptr
-                           : hints.seen_from ? usual == nullptr || (other != nullptr && other->score > usual->score)
-                                             : other != nullptr && std::ranges::all_of(candidates, isBetter);
+                           : hints.seen_from
+                               ? usual == nullptr || (other != nullptr && other->score > usual->score)
+                               : other != nullptr && std::ranges::all_of(candidates, isBetter);
     if (other != nullptr && is_better) { return other->floor; }
     return usual != nullptr ? std::optional(usual->floor) : std::nullopt;
 }

@@ -22,7 +22,9 @@ Axes axesOf(const glm::dvec3& up, bool y_up) {
     const double side = std::abs(up.y) > 0.7 ? -up.y : y_up ? -1.0 : 1.0;
     glm::dvec3 ahead(0.0, 0.0, std::copysign(1.0, side));
     ahead -= glm::dot(ahead, up) * up;
-    if (glm::length(ahead) < 0.2) { ahead = std::copysign(1.0, up.z) * (glm::dvec3(0.0, 1.0, 0.0) - up.y * up); }
+    if (glm::length(ahead) < 0.2) {
+        ahead = std::copysign(1.0, up.z) * (glm::dvec3(0.0, 1.0, 0.0) - up.y * up);
+    }
     ahead = glm::normalize(ahead);
     return {glm::normalize(glm::cross(ahead, up)), up, ahead};
 }
@@ -42,10 +44,13 @@ std::vector<SplatSample> coreOf(std::vector<SplatSample> samples) {
         glm::dvec3 middle;
         std::vector<double> values(samples.size());
         for (int axis = 0; axis < 3; ++axis) {
-            std::ranges::transform(samples, values.begin(), [&](const SplatSample& sample) { return sample.centre[axis]; });
+            std::ranges::transform(samples, values.begin(),
+                                   [&](const SplatSample& sample) { return sample.centre[axis]; });
             middle[axis] = findQuantile(values, 0.5);
         }
-        const auto distanceOf = [&](const SplatSample& sample) { return glm::distance(sample.centre, middle); };
+        const auto distanceOf = [&](const SplatSample& sample) {
+            return glm::distance(sample.centre, middle);
+        };
         std::ranges::transform(samples, values.begin(), distanceOf);
         const double half = findQuantile(values, 0.5);
         if (!(half > 0.0) || findQuantile(values, 0.95) <= kFar * half) { break; }
@@ -59,7 +64,8 @@ Lie lieOf(const std::vector<SplatSample>& samples, const Axes& axes, const std::
     for (const SplatSample& sample : samples) {
         const double h = glm::dot(sample.centre, axes.up);
         const bool is_floor = lie.has_floor && std::abs(h - floor->height) < 2.0 * floor->thickness;
-        lie.spots.push_back({glm::dot(sample.centre, axes.right), h, glm::dot(sample.centre, axes.ahead), sample.reach, is_floor});
+        lie.spots.push_back({glm::dot(sample.centre, axes.right), h, glm::dot(sample.centre, axes.ahead),
+                             sample.reach, is_floor});
     }
     lie.x = rangeOf(valuesOf(lie.spots, [](const Spot& s) { return std::optional(s.x); }), 0.05);
     lie.z = rangeOf(valuesOf(lie.spots, [](const Spot& s) { return std::optional(s.z); }), 0.05);
@@ -78,7 +84,8 @@ Axes alongSides(const std::vector<SplatSample>& samples, const Axes& axes) {
         const Axes tried = turned(axes, 1.5707963267948966 * i / kTurns);
         std::vector<double> x, z;
         for (std::size_t j = 0; j < samples.size(); j += step) {
-            x.push_back(glm::dot(samples[j].centre, tried.right)), z.push_back(glm::dot(samples[j].centre, tried.ahead));
+            x.push_back(glm::dot(samples[j].centre, tried.right)),
+                z.push_back(glm::dot(samples[j].centre, tried.ahead));
         }
         const double area = rangeOf(std::move(x), 0.05).length() * rangeOf(std::move(z), 0.05).length();
         if (area < 0.98 * least) { least = area, best = tried; }

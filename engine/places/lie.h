@@ -19,7 +19,9 @@ struct Spot {
 
 struct Axes {
     glm::dvec3 right, up, ahead;
-    [[nodiscard]] glm::dvec3 world(double x, double h, double z) const { return x * right + h * up + z * ahead; }
+    [[nodiscard]] glm::dvec3 world(double x, double h, double z) const {
+        return x * right + h * up + z * ahead;
+    }
 };
 
 // The front of a scene is the side from which one looks ahead.

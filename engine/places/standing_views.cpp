@@ -35,8 +35,10 @@ glm::dvec2 evenPoint(std::size_t i) {
 // From the middle of what is looked at.
 View viewOfShell(const View& start, const Axes& axes, bool has_floor, std::size_t i) {
     const double distance = glm::length(start.eye - start.look) * kDistances.at(i % kDistances.size());
-    const double lowest = std::sin(glm::radians(has_floor ? 4.0 : -50.0)), highest = std::sin(glm::radians(70.0));
-    const double up = lowest + (highest - lowest) * fractionOf(0.6180339887498949 * static_cast<double>(i) + 0.3),
+    const double lowest = std::sin(glm::radians(has_floor ? 4.0 : -50.0)),
+                 highest = std::sin(glm::radians(70.0));
+    const double up = lowest +
+                      (highest - lowest) * fractionOf(0.6180339887498949 * static_cast<double>(i) + 0.3),
                  level = std::sqrt(1.0 - up * up);
     const double turn = kGoldenAngle * static_cast<double>(i);
     const glm::dvec3 from = axes.world(level * std::sin(turn), up, -level * std::cos(turn));
@@ -47,18 +49,22 @@ View viewOfShell(const View& start, const Axes& axes, bool has_floor, std::size_
 double clearanceAt(const std::vector<SplatSample>& samples, const glm::dvec3& place) {
     std::vector<double> distances;
     distances.reserve(samples.size());
-    for (const SplatSample& sample : samples) { distances.push_back(glm::distance(sample.centre, place) - sample.reach); }
+    for (const SplatSample& sample : samples) {
+        distances.push_back(glm::distance(sample.centre, place) - sample.reach);
+    }
     return findQuantile(distances, 0.002);
 }
 
 // A place within the scene's sides: the clearest of several tries, unless one of the first is clear enough.
-glm::dvec3 findPlace(const Lie& lie, const Axes& axes, const std::vector<SplatSample>& samples, double eye_height, std::size_t place) {
+glm::dvec3 findPlace(const Lie& lie, const Axes& axes, const std::vector<SplatSample>& samples,
+                     double eye_height, std::size_t place) {
     glm::dvec3 best{0.0};
     double clearest = -1e300;
     for (std::size_t i = 0; i < kTriedPerPlace && clearest < kClear * eye_height; ++i) {
         const glm::dvec2 at = kInner * (evenPoint(place * kTriedPerPlace + i) - 0.5);
         const double h = lie.floor_h + eye_height * kHeights.at(place % kHeights.size());
-        const glm::dvec3 tried = axes.world(lie.x.middle() + at.x * lie.x.length(), h, lie.z.middle() + at.y * lie.z.length());
+        const glm::dvec3 tried =
+            axes.world(lie.x.middle() + at.x * lie.x.length(), h, lie.z.middle() + at.y * lie.z.length());
         const double clearance = clearanceAt(samples, tried);
         if (clearance > clearest) { clearest = clearance, best = tried; }
     }
@@ -66,7 +72,8 @@ glm::dvec3 findPlace(const Lie& lie, const Axes& axes, const std::vector<SplatSa
 }
 
 View viewOfFace(const Axes& axes, const glm::dvec3& eye, double turn, std::size_t face) {
-    const glm::dvec3 ahead = axes.world(std::sin(turn), 0.0, std::cos(turn)), right = axes.world(std::cos(turn), 0.0, -std::sin(turn));
+    const glm::dvec3 ahead = axes.world(std::sin(turn), 0.0, std::cos(turn)),
+                     right = axes.world(std::cos(turn), 0.0, -std::sin(turn));
     if (face >= 4) { return {eye, eye + (face == 4 ? axes.up : -axes.up), ahead, kFaceDegrees}; }
     const glm::dvec3 look = face % 2 == 0 ? ahead : right;
     return {eye, face < 2 ? eye + look : eye - look, axes.up, kFaceDegrees};
@@ -78,12 +85,15 @@ std::vector<View> standingViews(const Scene& scene, std::size_t count, std::size
     const Standpoint start = judgeStandpoint(scene);
     const std::vector<SplatSample> samples = coreOf(sampleSplats(scene, kMostJudged));
     const glm::dvec3 up = glm::normalize(start.view.up);
-    std::optional<FloorPlane> floor = chooseFloor(samples, {.usual = up, .known = UpHints::Known::kDirection});
+    std::optional<FloorPlane> floor =
+        chooseFloor(samples, {.usual = up, .known = UpHints::Known::kDirection});
     if (floor && (floor->is_ceiling || glm::dot(floor->up, up) < 0.98)) { floor.reset(); }
     const Axes axes = start.is_inside ? alongSides(samples, axesOf(up, scene.y_up)) : axesOf(up, scene.y_up);
     std::vector<View> views;
     if (!start.is_inside) {
-        for (std::size_t i = first; i < first + count; ++i) { views.push_back(viewOfShell(start.view, axes, floor.has_value(), i)); }
+        for (std::size_t i = first; i < first + count; ++i) {
+            views.push_back(viewOfShell(start.view, axes, floor.has_value(), i));
+        }
         return views;
     }
     const Lie lie = lieOf(samples, axes, floor);
@@ -97,7 +107,8 @@ std::vector<View> standingViews(const Scene& scene, std::size_t count, std::size
     return views;
 }
 
-std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::span<const View> from, std::size_t count) {
+std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::span<const View> from,
+                            std::size_t count) {
     std::vector<View> places;
     for (const View& view : from) {
         if (std::ranges::find(places, view.eye, &View::eye) == places.end()) { places.push_back(view); }
@@ -114,7 +125,8 @@ std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::
         const double half = distance > radius ? glm::degrees(std::asin(radius / distance)) : kWidestDegrees;
         view.fov_x_deg = std::clamp(2.0 * half, kNarrowestDegrees, kWidestDegrees);
         const glm::dvec3 ahead = glm::normalize(view.look - view.eye);
-        const glm::dvec3 side = std::abs(ahead.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+        const glm::dvec3 side =
+            std::abs(ahead.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
         if (std::abs(glm::dot(ahead, glm::normalize(view.up))) > 0.99) { view.up = side; }
         views.push_back(view);
     }

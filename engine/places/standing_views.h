@@ -18,6 +18,7 @@ std::vector<View> standingViews(const Scene& scene, std::size_t count, std::size
 
 // A part of a scene, between two corners, as seen from `count` of the eyes' different places, evenly chosen,
 // or from all: as narrow as shows it whole.
-std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::span<const View> from, std::size_t count);
+std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::span<const View> from,
+                            std::size_t count);
 
 }  // namespace binosplat

@@ -46,7 +46,9 @@ int surroundingSectors(const Lie& lie) {
         Sector& sector = sectors[sectorOf(x, z)];
         const double distance = std::hypot(x, z);
         if (spot.is_floor) { sector.floor.push_back(distance); }
-        if (!spot.is_floor && spot.h > lie.floor_h + 0.2 * lie.height) { sector.standing.push_back(distance), ++standing; }
+        if (!spot.is_floor && spot.h > lie.floor_h + 0.2 * lie.height) {
+            sector.standing.push_back(distance), ++standing;
+        }
     }
     const double least_radius = 0.25 * std::min(lie.x.length(), lie.z.length());
     int surrounding = 0;
@@ -66,8 +68,8 @@ double furnishedShare(const Lie& lie) {
         if (spot.is_floor) { continue; }
         ++all;
         inside += std::abs(spot.x - lie.x.middle()) < 0.375 * lie.x.length() &&
-                  std::abs(spot.z - lie.z.middle()) < 0.375 * lie.z.length() && spot.h > lie.floor_h + 0.08 * lie.height &&
-                  spot.h < lie.floor_h + 0.85 * lie.height;
+                  std::abs(spot.z - lie.z.middle()) < 0.375 * lie.z.length() &&
+                  spot.h > lie.floor_h + 0.08 * lie.height && spot.h < lie.floor_h + 0.85 * lie.height;
     }
     return all == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(all);
 }
@@ -78,7 +80,8 @@ bool growsOutwards(const Lie& lie) {
     const auto reachAt = [&](double from, double to) {
         return valuesOf(lie.spots, [&](const Spot& spot) -> std::optional<double> {
             const double distance = std::hypot(spot.x - lie.x.middle(), spot.z - lie.z.middle());
-            return distance >= from * radius && distance < to * radius ? std::optional(spot.reach) : std::nullopt;
+            return distance >= from * radius && distance < to * radius ? std::optional(spot.reach)
+                                                                       : std::nullopt;
         });
     };
     std::vector<double> near = reachAt(0.0, 0.35), far = reachAt(0.7, 1.5);
@@ -91,7 +94,10 @@ double eyeHeight(const Lie& lie, double metres_per_unit) {
 }
 
 bool surrounds(const Lie& lie, int sectors, double metres_per_unit) {
-    if (sectors < kSurrounded * kSectors || lie.height > kTallest * std::max(lie.x.length(), lie.z.length())) { return false; }
+    if (sectors < kSurrounded * kSectors ||
+        lie.height > kTallest * std::max(lie.x.length(), lie.z.length())) {
+        return false;
+    }
     if (!lie.has_floor) { return growsOutwards(lie); }
     // An empty room and a box differ only in size.
     return furnishedShare(lie) >= kHollow || lie.height * metres_per_unit >= kLeastRoomHeightMetres;
@@ -102,10 +108,15 @@ std::optional<glm::dvec3> findDensest(const Lie& lie) {
     const Range h{lie.floor_h, lie.floor_h + lie.height};
     const double side = std::max({lie.x.length(), lie.z.length(), h.length()}) / kCells;
     if (!(side > 0.0)) { return std::nullopt; }
-    const auto cellsOf = [&](const Range& range) { return std::max(1, static_cast<int>(std::ceil(range.length() / side))); };
+    const auto cellsOf = [&](const Range& range) {
+        return std::max(1, static_cast<int>(std::ceil(range.length() / side)));
+    };
     const std::array<int, 3> cells{cellsOf(lie.x), cellsOf(h), cellsOf(lie.z)};
-    std::vector<int> counts(static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]));
-    const auto indexOf = [&](int i, int j, int k) { return static_cast<std::size_t>((i * cells[1] + j) * cells[2] + k); };
+    std::vector<int> counts(static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *
+                            static_cast<std::size_t>(cells[2]));
+    const auto indexOf = [&](int i, int j, int k) {
+        return static_cast<std::size_t>((i * cells[1] + j) * cells[2] + k);
+    };
     const auto cellOf = [&](const Spot& spot) {
         return std::array<int, 3>{static_cast<int>(std::floor((spot.x - lie.x.low) / side)),
                                   static_cast<int>(std::floor((spot.h - h.low) / side)),
@@ -136,13 +147,17 @@ std::optional<glm::dvec3> findDensest(const Lie& lie) {
         }
     }
     if (most == 0) { return std::nullopt; }
-    return glm::dvec3(lie.x.low + (found[0] + 0.5) * side, h.low + (found[1] + 0.5) * side, lie.z.low + (found[2] + 0.5) * side);
+    return glm::dvec3(lie.x.low + (found[0] + 0.5) * side, h.low + (found[1] + 0.5) * side,
+                      lie.z.low + (found[2] + 0.5) * side);
 }
 
 // The distance from there to what is near, leaving out two in a thousand.
-double clearanceAt(const std::vector<Spot>& spots, double x, double h, double z, std::vector<double>& distances) {
+double clearanceAt(const std::vector<Spot>& spots, double x, double h, double z,
+                   std::vector<double>& distances) {
     distances.clear();
-    for (const Spot& spot : spots) { distances.push_back(std::hypot(spot.x - x, spot.h - h, spot.z - z) - spot.reach); }
+    for (const Spot& spot : spots) {
+        distances.push_back(std::hypot(spot.x - x, spot.h - h, spot.z - z) - spot.reach);
+    }
     return findQuantile(distances, 0.002);
 }
 
@@ -156,8 +171,11 @@ bool hasRoom(const Lie& lie, const std::vector<Spot>& spots, const glm::dvec3& h
         near += std::hypot(x, spot.h - head.y, z) < radius;
         if (!spot.is_floor) { sectors[sectorOf(x, z)].push_back(std::hypot(x, z)); }
     }
-    const double sphere = 4.18879 * radius * radius * radius, all = lie.x.length() * lie.z.length() * lie.height;
-    const auto isFree = [&](std::vector<double>& sector) { return sector.size() >= kFewInSector && findQuantile(sector, 0.5) >= radius; };
+    const double sphere = 4.18879 * radius * radius * radius,
+                 all = lie.x.length() * lie.z.length() * lie.height;
+    const auto isFree = [&](std::vector<double>& sector) {
+        return sector.size() >= kFewInSector && findQuantile(sector, 0.5) >= radius;
+    };
     return near * all <= kMostDense * sphere * static_cast<double>(spots.size()) &&
            static_cast<double>(std::ranges::count_if(sectors, isFree)) >= kSurrounded * kSectors;
 }
@@ -173,9 +191,12 @@ std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
     if (!densest) { return std::nullopt; }
     const double h = lie.floor_h + eye_height, half = 0.5 * std::min(lie.x.length(), lie.z.length());
     std::vector<Spot> some;
-    for (std::size_t i = 0; i < lie.spots.size(); i += lie.spots.size() / kMostForRoom + 1) { some.push_back(lie.spots[i]); }
+    for (std::size_t i = 0; i < lie.spots.size(); i += lie.spots.size() / kMostForRoom + 1) {
+        some.push_back(lie.spots[i]);
+    }
     const auto medianOf = [&](double Spot::*along) {
-        std::vector<double> values = valuesOf(some, [&](const Spot& spot) { return std::optional(spot.*along); });
+        std::vector<double> values =
+            valuesOf(some, [&](const Spot& spot) { return std::optional(spot.*along); });
         return findQuantile(values, 0.5);
     };
     const double median_x = medianOf(&Spot::x), median_z = medianOf(&Spot::z);
@@ -187,7 +208,8 @@ std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
         const double x = lie.x.low + lie.x.length() * (i % kGrid + 1) / (kGrid + 1),
                      z = lie.z.low + lie.z.length() * (i / kGrid + 1) / (kGrid + 1);
         const double clearance = clearanceAt(some, x, h, z, scratch);
-        const double away = std::hypot(x - median_x, z - median_z) / half, to_dense = std::hypot(x - densest->x, z - densest->z) / half;
+        const double away = std::hypot(x - median_x, z - median_z) / half,
+                     to_dense = std::hypot(x - densest->x, z - densest->z) / half;
         const double score = std::min(clearance / enough, 1.0) - 0.5 * away - std::max(0.0, 0.8 - to_dense);
         if (clearance > 0.15 * enough && score > best_score && hasRoom(lie, some, {x, h, z}, 0.9 * enough)) {
             best_score = score, best = Place{{x, h, z}, *densest, clearance};
@@ -200,12 +222,13 @@ std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
     return best;
 }
 
-std::string explainUp(const StandpointWish& wish, const UpHints& hints, const std::optional<FloorPlane>& floor) {
+std::string explainUp(const StandpointWish& wish, const UpHints& hints,
+                      const std::optional<FloorPlane>& floor) {
     if (wish.up) { return "given"; }
     if (floor) {
         return fmt::format("of the {}: {:.0f} % of the splats lie in it, {:.0f} % of the others {} it",
-                           floor->is_ceiling ? "ceiling" : "floor", 100.0 * floor->share, 100.0 * (1.0 - floor->behind),
-                           floor->is_ceiling ? "below" : "above");
+                           floor->is_ceiling ? "ceiling" : "floor", 100.0 * floor->share,
+                           100.0 * (1.0 - floor->behind), floor->is_ceiling ? "below" : "above");
     }
     const char* const whose = hints.known == UpHints::Known::kNothing ? "by convention" : "as the file says";
     return fmt::format("{}, as no floor was found", whose);
@@ -214,7 +237,8 @@ std::string explainUp(const StandpointWish& wish, const UpHints& hints, const st
 // From in front, level, or a little from above if things stand on a floor.
 Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
     std::vector<Spot> object;
-    std::ranges::copy_if(lie.spots, std::back_inserter(object), [](const Spot& spot) { return !spot.is_floor; });
+    std::ranges::copy_if(lie.spots, std::back_inserter(object),
+                         [](const Spot& spot) { return !spot.is_floor; });
     const bool on_floor = lie.has_floor && 5 * object.size() >= lie.spots.size();
     if (!on_floor) { object = lie.spots; }
     const auto along = [&](double Spot::*axis) {
@@ -225,7 +249,8 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
     // least half a unit. If splats are spread evenly, the tenth left out at the ends makes the box a ninth
     // longer.
     double radius = 0.5 / 0.9 * glm::length(glm::dvec3(x.length(), h.length(), z.length()));
-    std::vector<double> reaches = valuesOf(object, [](const Spot& spot) { return std::optional(spot.reach); });
+    std::vector<double> reaches =
+        valuesOf(object, [](const Spot& spot) { return std::optional(spot.reach); });
     const double usual = 0.5 * findQuantile(reaches, 0.5);
     if (radius <= usual) { radius = std::max(3.0 * usual, 0.5); }
     const double distance = radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0)));
@@ -233,7 +258,8 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
     const glm::dvec3 look = axes.world(x.middle(), h.middle(), z.middle());
     const glm::dvec3 eye = look + distance * (std::sin(rise) * axes.up - std::cos(rise) * axes.ahead);
     return {{eye, look, axes.up, fov_x_deg},
-            fmt::format("outside: {:.3g} units from the middle of what is {:.3g} units across", distance, 2.0 * radius),
+            fmt::format("outside: {:.3g} units from the middle of what is {:.3g} units across", distance,
+                        2.0 * radius),
             {}};
 }
 
@@ -241,12 +267,16 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
 
 Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
     UpHints hints = hintsOf(scene);
-    if (wish.up) { hints = {.usual = glm::normalize(*wish.up), .front = hints.front, .known = UpHints::Known::kDirection}; }
+    if (wish.up) {
+        hints = {
+            .usual = glm::normalize(*wish.up), .front = hints.front, .known = UpHints::Known::kDirection};
+    }
     const std::vector<SplatSample> samples = coreOf(sampleSplats(scene, kMostSamples));
     if (samples.empty()) {
         const Axes axes = axesOf(hints.usual, scene.y_up);
-        return {
-            {-axes.ahead, {0.0, 0.0, 0.0}, axes.up, wish.fov_x_deg}, "outside: there is nothing to be seen", explainUp(wish, hints, {})};
+        return {{-axes.ahead, {0.0, 0.0, 0.0}, axes.up, wish.fov_x_deg},
+                "outside: there is nothing to be seen",
+                explainUp(wish, hints, {})};
     }
     std::optional<FloorPlane> floor = chooseFloor(samples, hints);
     const glm::dvec3 up = floor && !wish.up ? floor->up : hints.usual;
@@ -260,12 +290,14 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
         const double eye_height = eyeHeight(lie, wish.metres_per_unit);
         if (const std::optional<Place> place = findPlaceInside(lie, eye_height)) {
             const auto& [eye, look, clearance] = *place;
-            return {{sides.world(eye.x, eye.y, eye.z), sides.world(look.x, look.y, look.z), up, wish.fov_x_deg},
-                    fmt::format("inside: the scene surrounds its middle in {} of {} directions; {:.3g} units above the floor, {:.3g} "
-                                "from the densest part, which is looked at",
-                                sectors, kSectors, eye_height, glm::length(look - eye)),
-                    up_why,
-                    true};
+            return {
+                {sides.world(eye.x, eye.y, eye.z), sides.world(look.x, look.y, look.z), up, wish.fov_x_deg},
+                fmt::format("inside: the scene surrounds its middle in {} of {} directions; {:.3g} units "
+                            "above the floor, {:.3g} "
+                            "from the densest part, which is looked at",
+                            sectors, kSectors, eye_height, glm::length(look - eye)),
+                up_why,
+                true};
         }
     }
     const Lie seen = lieOf(samples, axes, floor);
@@ -292,17 +324,20 @@ double usualNear(const Scene& scene) {
     return size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
 }
 
-std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras, const std::optional<glm::dvec3>& doubtful) {
+std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras,
+                                    const std::optional<glm::dvec3>& doubtful) {
     UpHints hints = hintsOf(scene);
-    if (doubtful && hints.known == UpHints::Known::kNothing) { hints.usual = *doubtful, hints.is_doubtful = true; }
+    if (doubtful && hints.known == UpHints::Known::kNothing) {
+        hints.usual = *doubtful, hints.is_doubtful = true;
+    }
     hints.seen_from = cameras;
     const std::optional<FloorPlane> floor = chooseFloor(coreOf(sampleSplats(scene, kMostForRoom)), hints);
     return floor ? std::optional(floor->up) : std::nullopt;
 }
 
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up) {
-    const std::optional<FloorPlane> floor =
-        chooseFloor(coreOf(sampleSplats(scene, kMostForRoom)), {.usual = up, .known = UpHints::Known::kDirection});
+    const std::optional<FloorPlane> floor = chooseFloor(coreOf(sampleSplats(scene, kMostForRoom)),
+                                                        {.usual = up, .known = UpHints::Known::kDirection});
     if (!floor || floor->is_ceiling || glm::dot(floor->up, up) < 0.98) { return std::nullopt; }
     return floor->height;
 }

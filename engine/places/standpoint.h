@@ -45,7 +45,8 @@ inline double coreSize(const Scene& scene) { return measureCore(scene).size; }
 
 // The up of the plane beneath cameras whose mean place is given, if there is one. `doubtful`: the up that
 // cameras suggest, unless the file states one; any floor around it is taken before the others.
-std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras, const std::optional<glm::dvec3>& doubtful = {});
+std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras,
+                                    const std::optional<glm::dvec3>& doubtful = {});
 
 // The height of the floor along `up`, a unit vector, if there is one: dot(up, p) of its points.
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up);

@@ -34,7 +34,8 @@ double sizeOf(const std::vector<SplatSample>& samples, glm::dvec3& middle) {
     glm::dvec3 sides(0.0);
     std::vector<double> values(samples.size());
     for (int axis = 0; axis < 3; ++axis) {
-        std::ranges::transform(samples, values.begin(), [&](const SplatSample& sample) { return sample.centre[axis]; });
+        std::ranges::transform(samples, values.begin(),
+                               [&](const SplatSample& sample) { return sample.centre[axis]; });
         const double low = findQuantile(values, 0.05);
         sides[axis] = findQuantile(values, 0.95) - low;
         middle[axis] = findQuantile(values, 0.5);
@@ -42,7 +43,8 @@ double sizeOf(const std::vector<SplatSample>& samples, glm::dvec3& middle) {
     return glm::length(sides);
 }
 
-std::size_t countIn(const std::vector<SplatSample>& samples, std::size_t step, const Plane& plane, double thickness) {
+std::size_t countIn(const std::vector<SplatSample>& samples, std::size_t step, const Plane& plane,
+                    double thickness) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < samples.size(); i += step) {
         count += std::abs(glm::dot(samples[i].centre, plane.normal) - plane.height) < thickness;
@@ -67,8 +69,8 @@ glm::dvec3 leastSpread(const glm::dmat3& covariance, const glm::dvec3& near) {
 // Fits to the splats near the plane, farther ones first: where walls begin at the floor, the splats nearest
 // to the plane are all the floor's.
 Plane fit(const std::vector<SplatSample>& samples, Plane plane, double thickness) {
-    for (const double near :
-         {2.0 * thickness, thickness, thickness, 0.5 * thickness, 0.5 * thickness, 0.25 * thickness, 0.25 * thickness}) {
+    for (const double near : {2.0 * thickness, thickness, thickness, 0.5 * thickness, 0.5 * thickness,
+                              0.25 * thickness, 0.25 * thickness}) {
         glm::dvec3 sum(0.0);
         std::vector<glm::dvec3> inside;
         for (const SplatSample& sample : samples) {
@@ -79,7 +81,9 @@ Plane fit(const std::vector<SplatSample>& samples, Plane plane, double thickness
         if (inside.size() < 3) { break; }
         const glm::dvec3 mean = sum / static_cast<double>(inside.size());
         glm::dmat3 covariance(0.0);
-        for (const glm::dvec3& point : inside) { covariance += glm::outerProduct(point - mean, point - mean); }
+        for (const glm::dvec3& point : inside) {
+            covariance += glm::outerProduct(point - mean, point - mean);
+        }
         plane.normal = leastSpread(covariance, plane.normal);
         plane.height = glm::dot(mean, plane.normal);
     }
@@ -116,12 +120,14 @@ bool isLike(const Plane& a, const Plane& b, const glm::dvec3& middle, double thi
 
 // Those with the most splats, each unlike the others: a table full of things is tried a hundred times before
 // the ground beneath it.
-std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm::dvec3& middle, double thickness) {
+std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm::dvec3& middle,
+                          double thickness) {
     std::ranges::sort(tried, std::greater<>(), &Plane::inliers);
     std::vector<Plane> kept;
     for (const Plane& plane : tried) {
         if (kept.size() == most) { break; }
-        if (std::ranges::none_of(kept, [&](const Plane& other) { return isLike(plane, other, middle, thickness); })) {
+        if (std::ranges::none_of(
+                kept, [&](const Plane& other) { return isLike(plane, other, middle, thickness); })) {
             kept.push_back(plane);
         }
     }
@@ -129,7 +135,8 @@ std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm:
 }
 
 // Empty if splats are on both sides, or if the plane is a strip.
-std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, double size, double thickness) {
+std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, double size,
+                                  double thickness) {
     std::size_t above = 0, below = 0;
     glm::dvec3 sum(0.0);
     for (const SplatSample& sample : samples) {
@@ -140,14 +147,16 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
     }
     const double share = static_cast<double>(plane.inliers) / static_cast<double>(samples.size());
     const std::size_t others = above + below, behind = std::min(above, below);
-    if (share < kLeastShare || others == 0 || static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
+    if (share < kLeastShare || others == 0 ||
+        static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
         return std::nullopt;
     }
     const glm::dvec3 mean = sum / static_cast<double>(plane.inliers);
     glm::dmat3 covariance(0.0);
     for (const SplatSample& sample : samples) {
         if (std::abs(glm::dot(sample.centre, plane.normal) - plane.height) >= thickness) { continue; }
-        covariance += glm::outerProduct(sample.centre - mean, sample.centre - mean) / static_cast<double>(plane.inliers);
+        covariance += glm::outerProduct(sample.centre - mean, sample.centre - mean) /
+                      static_cast<double>(plane.inliers);
     }
     // The direction within the plane with the smaller spread: what is left of the larger one's share.
     const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
@@ -174,15 +183,17 @@ std::vector<SplatSample> sampleSplats(const Scene& scene, std::size_t most) {
         const std::size_t i = std::min<std::size_t>(begin + mixed % step, scene.size() - 1);
         if (i < scene.opacities.size() && scene.opacities[i] < 1.0f / 255.0f) { continue; }
         const glm::vec2 scale = i < scene.scales.size() ? scene.scales[i] : glm::vec2(0.0f);
-        const glm::dquat turn = i < scene.rotations.size() ? glm::dquat(scene.rotations[i]) : glm::dquat(1.0, 0.0, 0.0, 0.0);
-        samples.push_back(
-            {glm::dvec3(scene.positions[i]), turn * glm::dvec3(0.0, 0.0, 1.0), 2.0 * static_cast<double>(std::max(scale.x, scale.y))});
+        const glm::dquat turn =
+            i < scene.rotations.size() ? glm::dquat(scene.rotations[i]) : glm::dquat(1.0, 0.0, 0.0, 0.0);
+        samples.push_back({glm::dvec3(scene.positions[i]), turn * glm::dvec3(0.0, 0.0, 1.0),
+                           2.0 * static_cast<double>(std::max(scale.x, scale.y))});
     }
     return samples;
 }
 
 double findQuantile(std::vector<double>& values, double share) {
-    const auto rank = static_cast<std::ptrdiff_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1));
+    const auto rank =
+        static_cast<std::ptrdiff_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
     return values[static_cast<std::size_t>(rank)];
 }
@@ -201,11 +212,15 @@ std::vector<FloorPlane> findPlanes(const std::vector<SplatSample>& samples) {
     }
     std::vector<Plane> fitted;
     for (std::vector<Plane>& planes : about) {
-        for (const Plane& plane : bestOf(std::move(planes), kKept, middle, thickness)) { fitted.push_back(fit(samples, plane, thickness)); }
+        for (const Plane& plane : bestOf(std::move(planes), kKept, middle, thickness)) {
+            fitted.push_back(fit(samples, plane, thickness));
+        }
     }
     std::vector<FloorPlane> found;
     for (const Plane& plane : bestOf(std::move(fitted), 3 * kKept, middle, thickness)) {
-        if (const std::optional<FloorPlane> floor = asFloor(samples, plane, size, thickness)) { found.push_back(*floor); }
+        if (const std::optional<FloorPlane> floor = asFloor(samples, plane, size, thickness)) {
+            found.push_back(*floor);
+        }
     }
     return found;
 }

@@ -12,7 +12,9 @@ std::vector<float> widened(const Scene& scene, int degree) {
     const auto from = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)),
                to = static_cast<std::size_t>(3 * shCoefficientCount(degree));
     std::vector<float> sh(scene.size() * to);
-    for (std::size_t i = 0; i < scene.size(); ++i) { std::copy_n(scene.sh.data() + i * from, from, sh.data() + i * to); }
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        std::copy_n(scene.sh.data() + i * from, from, sh.data() + i * to);
+    }
     return sh;
 }
 

@@ -23,7 +23,9 @@ bool isSimilarity(const glm::dmat3& matrix) {
     const glm::dmat3 squares = glm::transpose(matrix) * matrix;
     const double square = (squares[0][0] + squares[1][1] + squares[2][2]) / 3.0;
     for (int i = 0; i < 9; ++i) {
-        if (!(std::abs(squares[i / 3][i % 3] - (i % 4 == 0 ? square : 0.0)) <= kAlike * square)) { return false; }
+        if (!(std::abs(squares[i / 3][i % 3] - (i % 4 == 0 ? square : 0.0)) <= kAlike * square)) {
+            return false;
+        }
     }
     return square > 0.0;
 }
@@ -34,7 +36,9 @@ glm::dmat3 nearestRotation(const glm::dmat3& matrix) {
     for (int step = 0; step < 60; ++step) {
         const glm::dmat3 next = 0.5 * (q + glm::transpose(glm::inverse(q)));
         double change = 0.0;
-        for (int i = 0; i < 9; ++i) { change = std::max(change, std::abs(next[i / 3][i % 3] - q[i / 3][i % 3])); }
+        for (int i = 0; i < 9; ++i) {
+            change = std::max(change, std::abs(next[i / 3][i % 3] - q[i / 3][i % 3]));
+        }
         q = next;
         if (change < 1e-15) { break; }
     }
@@ -49,10 +53,12 @@ Ellipsoid place(const glm::dmat3& matrix, const Ellipsoid& ellipsoid) {
     for (int sweep = 0; sweep < 40; ++sweep) {
         bool changed = false;
         for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
-            const double aa = glm::dot(axes[a], axes[a]), bb = glm::dot(axes[b], axes[b]), ab = glm::dot(axes[a], axes[b]);
+            const double aa = glm::dot(axes[a], axes[a]), bb = glm::dot(axes[b], axes[b]),
+                         ab = glm::dot(axes[a], axes[b]);
             if (std::abs(ab) <= 1e-15 * std::sqrt(aa * bb)) { continue; }
             changed = true;
-            const double ratio = (bb - aa) / (2.0 * ab), tangent = std::copysign(1.0, ratio) / (std::abs(ratio) + std::hypot(1.0, ratio));
+            const double ratio = (bb - aa) / (2.0 * ab),
+                         tangent = std::copysign(1.0, ratio) / (std::abs(ratio) + std::hypot(1.0, ratio));
             const double cosine = 1.0 / std::hypot(1.0, tangent), sine = cosine * tangent;
             const glm::dvec3 old = axes[a];
             axes[a] = cosine * old - sine * axes[b];
@@ -74,9 +80,10 @@ Ellipsoid place(const glm::dmat3& matrix, const Ellipsoid& ellipsoid) {
     for (int i = 0; i < 3 && known > 0; ++i) {
         const int next = (i + 1) % 3, after = (i + 2) % 3;
         if (placed.scales[i] > 0.0) { continue; }
-        const bool has_next = directions[next] != glm::dvec3(0.0), has_after = directions[after] != glm::dvec3(0.0);
-        directions[i] =
-            has_next && has_after ? glm::cross(directions[next], directions[after]) : anyNormal(directions[has_next ? next : after]);
+        const bool has_next = directions[next] != glm::dvec3(0.0),
+                   has_after = directions[after] != glm::dvec3(0.0);
+        directions[i] = has_next && has_after ? glm::cross(directions[next], directions[after])
+                                              : anyNormal(directions[has_next ? next : after]);
     }
     if (glm::determinant(directions) < 0.0) { directions[2] = -directions[2]; }  // an axis has no sign
     placed.rotation = glm::normalize(glm::quat_cast(directions));

@@ -19,7 +19,8 @@ void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes) {
     scene.sh.resize(scene.size() * static_cast<std::size_t>(new_width));
     scene.sh.shrink_to_fit();
     notes.sh_limited = true;
-    notes.lines.push_back(fmt::format("{}: colours of SH degree {}, limited to {} as asked", scene.name, scene.sh_degree, sh_degree));
+    notes.lines.push_back(fmt::format("{}: colours of SH degree {}, limited to {} as asked", scene.name,
+                                      scene.sh_degree, sh_degree));
     scene.sh_degree = sh_degree;
 }
 
@@ -30,7 +31,9 @@ void countFrom(Scene& scene, const glm::dvec3& origin) {
     scene.origin = origin;
 }
 
-std::string describeOrigin(const Scene& scene) { return fmt::format("{},{},{}", scene.origin.x, scene.origin.y, scene.origin.z); }
+std::string describeOrigin(const Scene& scene) {
+    return fmt::format("{},{},{}", scene.origin.x, scene.origin.y, scene.origin.z);
+}
 
 void keepWithin(Scene& scene, const glm::dvec3& centre, double radius) {
     std::vector<std::uint32_t> kept;
@@ -44,10 +47,11 @@ void flatten(Scene& scene, LoadNotes& notes) {
     if (!scene.isGaussian3d()) { return; }
     scene.thicknesses = {};
     scene.antialiased = false;
-    notes.lines.push_back(fmt::format(
-        "{}: three scales a splat (3DGS), flattened to discs by dropping the shortest axis of each; the median splat is {:.2f} times "
-        "as thick as its second axis, so surfaces may look more translucent than as trained",
-        scene.name, notes.median_flatness));
+    notes.lines.push_back(
+        fmt::format("{}: three scales a splat (3DGS), flattened to discs by dropping the shortest axis of "
+                    "each; the median splat is {:.2f} times "
+                    "as thick as its second axis, so surfaces may look more translucent than as trained",
+                    scene.name, notes.median_flatness));
 }
 
 }  // namespace binosplat

@@ -34,7 +34,9 @@ void solve(std::array<std::array<double, 7>, 7>& a, std::array<std::array<double
         for (std::size_t row = 0; row < n; ++row) {
             if (row == column) { continue; }
             const double factor = a[row][column] / a[column][column];
-            for (std::size_t i = 0; i < n; ++i) { a[row][i] -= factor * a[column][i], b[row][i] -= factor * b[column][i]; }
+            for (std::size_t i = 0; i < n; ++i) {
+                a[row][i] -= factor * a[column][i], b[row][i] -= factor * b[column][i];
+            }
         }
     }
     for (std::size_t row = 0; row < n; ++row) {
@@ -63,7 +65,9 @@ ShTurn::ShTurn(const glm::dmat3& target_from_source) {
         }
         solve(squares, products, n);
         for (std::size_t row = 0; row < n; ++row) {
-            for (std::size_t column = 0; column < n; ++column) { bands_[band - 1][row * n + column] = products[row][column]; }
+            for (std::size_t column = 0; column < n; ++column) {
+                bands_[band - 1][row * n + column] = products[row][column];
+            }
         }
     }
 }

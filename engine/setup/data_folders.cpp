@@ -7,11 +7,15 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> dataFolders() {
     std::vector<fs::path> folders;
-    if (const std::string chosen = environment("BINOSPLAT_DATA"); !chosen.empty()) { folders.emplace_back(chosen); }
+    if (const std::string chosen = environment("BINOSPLAT_DATA"); !chosen.empty()) {
+        folders.emplace_back(chosen);
+    }
     std::error_code gone;
     if (const fs::path here = fs::current_path(gone); !gone) { folders.push_back(here); }
     const fs::path program = programFile();
-    for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) { folders.push_back(folder); }
+    for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+        folders.push_back(folder);
+    }
     if (!program.empty()) { folders.push_back(program.parent_path().parent_path() / "share" / "binosplat"); }
     return folders;
 }

@@ -46,7 +46,8 @@ public:
 
     // A camera that starts at `world_from_start` and moves relative to it as the head does relative to its
     // first pose, with `units_per_metre` scene units to a metre: world_from_camera at `time_s`.
-    [[nodiscard]] Pose cameraAt(double time_s, const Pose& world_from_start, double units_per_metre = 1.0) const;
+    [[nodiscard]] Pose cameraAt(double time_s, const Pose& world_from_start,
+                                double units_per_metre = 1.0) const;
 
 private:
     std::vector<HeadSample> samples_;
@@ -63,7 +64,8 @@ struct MotionSegment {
 
 // The times of a motion's frames, starting at the segment's beginning. Throws Error if there are more than a
 // million; `file` is for messages.
-std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file);
+std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment,
+                               const std::string& file);
 
 // A file as xr/simulated/files/motion_file.h describes it. Throws Error with file and line.
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes);

@@ -14,14 +14,16 @@ HeadMotion parseHeadMotion(std::string_view text, const std::string& file, Motio
         for (const files::MotionSample& sample : motion.samples) {
             const auto& [x, y, z] = sample.position_m;
             const auto& [qx, qy, qz, qw] = sample.orientation_xyzw;
-            samples.push_back({sample.time_s, poseFromRecording({x, y, z}, glm::dquat(qw, qx, qy, qz), axes)});
+            samples.push_back(
+                {sample.time_s, poseFromRecording({x, y, z}, glm::dquat(qw, qx, qy, qz), axes)});
         }
         return HeadMotion(std::move(samples), std::move(motion.note));
     } catch (const files::Error& error) { throw Error(error.what()); }
 }
 
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes) {
-    return parseHeadMotion(readTextFile(path, "a CSV file of head motion", kMostRecordingBytes), path.string(), axes);
+    return parseHeadMotion(readTextFile(path, "a CSV file of head motion", kMostRecordingBytes),
+                           path.string(), axes);
 }
 
 }  // namespace binosplat

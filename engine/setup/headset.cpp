@@ -30,7 +30,8 @@ Headset readHeadset(const fs::path& path) {
     const std::string text = readTextFile(path, "a TOML file of a headset");
     try {
         const files::HeadsetFile file = files::parseHeadset(text, path.string());
-        Headset headset{.name = file.name, .source = file.source, .size_px = {file.size_px[0], file.size_px[1]}};
+        Headset headset{
+            .name = file.name, .source = file.source, .size_px = {file.size_px[0], file.size_px[1]}};
         headset.canting_rad = file.canting_rad;
         headset.eye_distance_m = file.eye_distance_m;
         for (std::size_t side = 0; side < 2; ++side) {
@@ -45,8 +46,8 @@ Headset readHeadset(const fs::path& path) {
 
 fs::path findHeadset(const std::string& name) {
     if (name.ends_with(".toml")) { return name; }
-    check(!name.empty() && name.find('/') == std::string::npos, "--headset is {}, must be a name of configs/headsets or a .toml file",
-          name);
+    check(!name.empty() && name.find('/') == std::string::npos,
+          "--headset is {}, must be a name of configs/headsets or a .toml file", name);
     std::set<std::string> known;
     for (const fs::path& root : dataFolders()) {
         const fs::path folder = root / "configs" / "headsets";
@@ -58,18 +59,22 @@ fs::path findHeadset(const std::string& name) {
     }
     std::string list;
     for (const std::string& one : known) { list += (list.empty() ? "" : ", ") + one; }
-    check(!list.empty(), "configs/headsets/{}.toml: not found: there is no configs/headsets in the searched folders; set BINOSPLAT_DATA",
+    check(!list.empty(),
+          "configs/headsets/{}.toml: not found: there is no configs/headsets in the searched folders; set "
+          "BINOSPLAT_DATA",
           name);
     fail("configs/headsets/{}.toml: not found, must be one of: {}", name, list);
 }
 
-std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance, glm::uvec2 size_px) {
+std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance,
+                               glm::uvec2 size_px) {
     std::array<Eye, 2> eyes;
     for (int side : {kLeft, kRight}) {
         const double x = (side == kLeft ? -0.5 : 0.5) * eye_distance;
         const Pose middle_from_camera{outwardTurn(side, headset.canting_rad), {x, 0.0, 0.0}};
         const auto index = static_cast<std::size_t>(side);
-        eyes[index] = {compose(world_from_middle, middle_from_camera), intrinsicsFromAngles(headset.angles[index], size_px), size_px};
+        eyes[index] = {compose(world_from_middle, middle_from_camera),
+                       intrinsicsFromAngles(headset.angles[index], size_px), size_px};
     }
     return eyes;
 }
@@ -78,9 +83,11 @@ Eye headsetMiddle(const Headset& headset, const Pose& world_from_middle, glm::uv
     const ViewAngles& left = headset.angles[kLeft];
     const ViewAngles& right = headset.angles[kRight];
     const double limit = glm::radians(85.0);
-    const ViewAngles both{std::max(-limit, std::min(left.left_rad - headset.canting_rad, right.left_rad + headset.canting_rad)),
-                          std::min(limit, std::max(left.right_rad - headset.canting_rad, right.right_rad + headset.canting_rad)),
-                          std::max(left.up_rad, right.up_rad), std::min(left.down_rad, right.down_rad)};
+    const ViewAngles both{
+        std::max(-limit, std::min(left.left_rad - headset.canting_rad, right.left_rad + headset.canting_rad)),
+        std::min(limit,
+                 std::max(left.right_rad - headset.canting_rad, right.right_rad + headset.canting_rad)),
+        std::max(left.up_rad, right.up_rad), std::min(left.down_rad, right.down_rad)};
     return {world_from_middle, intrinsicsFromAngles(both, size_px), size_px};
 }
 

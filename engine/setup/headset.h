@@ -29,7 +29,8 @@ Headset readHeadset(const std::filesystem::path& path);
 std::filesystem::path findHeadset(const std::string& name);
 
 // Both eyes of a wearer whose midpoint between the eyes is at `world_from_middle`.
-std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance, glm::uvec2 size_px);
+std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance,
+                               glm::uvec2 size_px);
 
 // The eye for `mono`, midway: its angles hold both eyes' views of far things.
 Eye headsetMiddle(const Headset& headset, const Pose& world_from_middle, glm::uvec2 size_px);

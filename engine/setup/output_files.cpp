@@ -19,7 +19,8 @@ static constexpr const char* kLongName = "frame_000000_a_name_of_the_usual_lengt
 
 OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
     // Remember which folders are new, so that a failed run can take them away again.
-    for (fs::path part = fs::absolute(folder).lexically_normal(); !part.empty() && part != part.root_path(); part = part.parent_path()) {
+    for (fs::path part = fs::absolute(folder).lexically_normal(); !part.empty() && part != part.root_path();
+         part = part.parent_path()) {
         std::error_code ignored;
         if (fs::exists(part, ignored)) { break; }
         if (part.has_filename()) { made_folders_.insert(made_folders_.begin(), part); }
@@ -29,8 +30,8 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
     const bool is_folder = !error && fs::is_directory(folder_, error);
     if (!is_folder) {
         removeUnpublished();
-        fail("{}: cannot be used as output directory ({}), must be a directory that can be made and written", folder_.string(),
-             error ? error.message() : "not a directory");
+        fail("{}: cannot be used as output directory ({}), must be a directory that can be made and written",
+             folder_.string(), error ? error.message() : "not a directory");
     }
     // A folder made inside proves that the place is writable, whatever its permission bits say; a file in
     // that, that its path is not too long: some systems then make the folder, but nothing in it.
@@ -43,8 +44,10 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
     staging_.clear();
     if (fits) { return; }
     removeUnpublished();
-    fail("{}: files in it cannot be made and found again: its path may be too long, with {} letters; must be a shorter one",
-         folder_.string(), fs::absolute(folder_).string().size());
+    fail(
+        "{}: files in it cannot be made and found again: its path may be too long, with {} letters; must be "
+        "a shorter one",
+        folder_.string(), fs::absolute(folder_).string().size());
 }
 
 const fs::path& OutputFiles::staging() {
@@ -67,7 +70,9 @@ void OutputFiles::removeUnpublished() noexcept {
     std::error_code ignored;
     if (!staging_.empty()) { removeFolder(staging_); }
     // Only empty folders go: `remove` refuses the others.
-    for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder) { fs::remove(*folder, ignored); }
+    for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder) {
+        fs::remove(*folder, ignored);
+    }
     made_folders_.clear();
 }
 
@@ -80,7 +85,8 @@ void OutputFiles::publish() {
         const fs::path target = folder_ / entry.filename();
         std::error_code none;
         const fs::file_status there = fs::status(target, none);
-        check(!fs::exists(there) || fs::is_regular_file(there), "{}: cannot be written ({}), must be a file or not there", target.string(),
+        check(!fs::exists(there) || fs::is_regular_file(there),
+              "{}: cannot be written ({}), must be a file or not there", target.string(),
               fs::is_directory(there) ? "is a directory" : "not a regular file");
     }
     for (const fs::path& entry : staged) {

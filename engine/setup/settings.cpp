@@ -25,7 +25,9 @@ namespace binosplat {
 
 namespace {
 
-std::string place(const std::string& file, const toml::node& node) { return fmt::format("{}:{}", file, node.source().begin.line); }
+std::string place(const std::string& file, const toml::node& node) {
+    return fmt::format("{}:{}", file, node.source().begin.line);
+}
 
 // The text of a plain value; nothing for arrays, tables, dates and times.
 std::optional<std::string> plainText(const toml::node& node) {
@@ -41,7 +43,8 @@ Setting settingFrom(const std::string& file, const std::string& key, const toml:
     if (const toml::array* array = node.as_array()) {
         for (const toml::node& element : *array) {
             const std::optional<std::string> text = plainText(element);
-            check(text.has_value(), "{} holds a {}, must be an array of numbers, strings or booleans", setting.origin,
+            check(text.has_value(), "{} holds a {}, must be an array of numbers, strings or booleans",
+                  setting.origin,
                   element.is_table()   ? "table"
                   : element.is_array() ? "nested array"
                                        : "date or time");
@@ -55,19 +58,21 @@ Setting settingFrom(const std::string& file, const std::string& key, const toml:
     return setting;
 }
 
-void addSetting(const std::string& file, SettingsTable& table, const std::string& written_key, const toml::node& node) {
+void addSetting(const std::string& file, SettingsTable& table, const std::string& written_key,
+                const toml::node& node) {
     std::string key = written_key;
     std::ranges::replace(key, '_', '-');
-    check(!table.settings.contains(key), "{}: {} is set twice, must be set once ('_' and '-' are the same)", place(file, node),
-          written_key);
+    check(!table.settings.contains(key), "{}: {} is set twice, must be set once ('_' and '-' are the same)",
+          place(file, node), written_key);
     table.settings.emplace(key, settingFrom(file, written_key, node));
 }
 
 SettingsTable tableFrom(const std::string& file, const std::string& name, const toml::table& table) {
     SettingsTable result{name, place(file, table), {}};
     for (const auto& [key, node] : table) {
-        check(!node.is_table() && !node.is_array_of_tables(), "{}: [{}.{}] is a table in a table, must be a [table] of its own",
-              place(file, node), name, key.str());
+        check(!node.is_table() && !node.is_array_of_tables(),
+              "{}: [{}.{}] is a table in a table, must be a [table] of its own", place(file, node), name,
+              key.str());
         addSetting(file, result, std::string(key.str()), node);
     }
     return result;
@@ -84,13 +89,16 @@ std::string Setting::text() const {
 std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
     const std::string file = path.string();
     const std::string text = readTextFile(path, "a TOML file");
-    if (const auto found = files::findUnreadableToml(text)) { fail("{}:{}: {}", file, found->line, found->problem); }
+    if (const auto found = files::findUnreadableToml(text)) {
+        fail("{}:{}: {}", file, found->line, found->problem);
+    }
 
     toml::table root;
     try {
         root = toml::parse(text, file);
     } catch (const toml::parse_error& error) {
-        fail("{}:{}: {}, must be valid TOML", file, error.source().begin.line, std::string(error.description()));
+        fail("{}:{}: {}, must be valid TOML", file, error.source().begin.line,
+             std::string(error.description()));
     }
     std::vector<SettingsTable> tables{SettingsTable{"", fmt::format("{}:1", file), {}}};
     for (const auto& [key, node] : root) {
@@ -98,7 +106,9 @@ std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
         if (const toml::table* table = node.as_table()) {
             tables.push_back(tableFrom(file, name, *table));
         } else if (node.is_array_of_tables()) {
-            for (const toml::node& element : *node.as_array()) { tables.push_back(tableFrom(file, name, *element.as_table())); }
+            for (const toml::node& element : *node.as_array()) {
+                tables.push_back(tableFrom(file, name, *element.as_table()));
+            }
         } else {
             addSetting(file, tables.front(), name, node);
         }

@@ -11,7 +11,8 @@
 
 namespace binosplat {
 
-std::string readTextFile(const std::filesystem::path& path, const std::string& expected, std::size_t most_bytes) {
+std::string readTextFile(const std::filesystem::path& path, const std::string& expected,
+                         std::size_t most_bytes) {
     std::string reason;
     const File file = openRegularFile(path, reason);
     check(file != nullptr, "{}: cannot be read ({}), must be {}", path.string(), reason, expected);
@@ -21,9 +22,11 @@ std::string readTextFile(const std::filesystem::path& path, const std::string& e
         text.resize(end + (std::size_t{1} << 16));
         errno = 0;
         const std::size_t got = std::fread(text.data() + end, 1, text.size() - end, file.get());
-        check(std::ferror(file.get()) == 0, "{}: cannot be read ({}), must be {}", path.string(), std::strerror(errno), expected);
+        check(std::ferror(file.get()) == 0, "{}: cannot be read ({}), must be {}", path.string(),
+              std::strerror(errno), expected);
         text.resize(end + got);
-        check(text.size() <= most_bytes, "{}: cannot be read (longer than {} MiB), must be {}", path.string(), most_bytes >> 20, expected);
+        check(text.size() <= most_bytes, "{}: cannot be read (longer than {} MiB), must be {}", path.string(),
+              most_bytes >> 20, expected);
     } while (std::exchange(end, text.size()) < text.size());
     requireNoLfsPointer(text, path.string());
     return text;

@@ -28,7 +28,10 @@ constexpr std::size_t kPartsAtOnce = 8;
 }  // namespace
 
 ChunkLoader::ChunkLoader(std::unique_ptr<ChunkSource> source, LoaderSettings settings)
-    : source_(std::move(source)), settings_(std::move(settings)), pause_(settings_.first_pause), troubles_(source_->fileCount()) {
+    : source_(std::move(source)),
+      settings_(std::move(settings)),
+      pause_(settings_.first_pause),
+      troubles_(source_->fileCount()) {
     source_->callWhileWaiting([this](double) {
         const std::lock_guard lock(mutex_);
         if (stops_) { throw Cancelled(); }
@@ -58,7 +61,8 @@ bool ChunkLoader::want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> f
 std::vector<LoadedPart> ChunkLoader::take(Waits waits) {
     const std::unique_lock lock = lockOf(mutex_, waits);
     if (!lock) { return {}; }
-    std::vector<LoadedPart> taken(std::make_move_iterator(done_.begin()), std::make_move_iterator(done_.end()));
+    std::vector<LoadedPart> taken(std::make_move_iterator(done_.begin()),
+                                  std::make_move_iterator(done_.end()));
     done_.clear();
     done_splats_ = 0;
     changed_.notify_all();
@@ -90,7 +94,8 @@ std::optional<LoaderWork> ChunkLoader::tryWork() const {
 
 bool ChunkLoader::waitForNews(std::chrono::milliseconds most) const {
     std::unique_lock lock(mutex_);
-    const bool came = news_.wait_for(lock, most, [&] { return !done_.empty() || news_count_ != news_seen_ || !nextFile(); });
+    const bool came = news_.wait_for(
+        lock, most, [&] { return !done_.empty() || news_count_ != news_seen_ || !nextFile(); });
     news_seen_ = news_count_;
     return came;
 }
@@ -107,9 +112,11 @@ std::optional<std::size_t> ChunkLoader::nextFile() const {
 std::vector<LeafLevel> ChunkLoader::wishesIn(std::size_t file) const {
     std::vector<LeafLevel> all;
     for (const std::vector<LeafLevel>* wishes : {&coarsest_, &finer_}) {
-        std::ranges::copy_if(*wishes, std::back_inserter(all), [&](LeafLevel at) { return rangeOf(at).file == file; });
-        const bool is_any_left =
-            std::ranges::any_of(*wishes, [&](LeafLevel at) { return rangeOf(at).file != file && !troubles_[rangeOf(at).file].broken; });
+        std::ranges::copy_if(*wishes, std::back_inserter(all),
+                             [&](LeafLevel at) { return rangeOf(at).file == file; });
+        const bool is_any_left = std::ranges::any_of(*wishes, [&](LeafLevel at) {
+            return rangeOf(at).file != file && !troubles_[rangeOf(at).file].broken;
+        });
         if (is_any_left) { break; }  // finer ones have their turn later
     }
     return all;
@@ -120,7 +127,8 @@ std::vector<std::size_t> ChunkLoader::filesAhead() const {
     for (const std::vector<LeafLevel>* wishes : {&coarsest_, &finer_}) {
         for (const LeafLevel at : *wishes) {
             const std::size_t file = rangeOf(at).file;
-            if (files.size() < kFilesAhead && !troubles_[file].broken && std::ranges::find(files, file) == files.end()) {
+            if (files.size() < kFilesAhead && !troubles_[file].broken &&
+                std::ranges::find(files, file) == files.end()) {
                 files.push_back(file);
             }
         }
@@ -129,7 +137,8 @@ std::vector<std::size_t> ChunkLoader::filesAhead() const {
 }
 
 bool ChunkLoader::isWished(LeafLevel at) const {
-    return std::ranges::find(coarsest_, at) != coarsest_.end() || std::ranges::find(finer_, at) != finer_.end();
+    return std::ranges::find(coarsest_, at) != coarsest_.end() ||
+           std::ranges::find(finer_, at) != finer_.end();
 }
 
 void ChunkLoader::removeWish(LeafLevel at) {
@@ -179,8 +188,12 @@ void ChunkLoader::run() {
         } catch (const Error& error) {
             meetTrouble(*file, error.what(), source_->failedFetches() != failed_before);
         } catch (const std::bad_alloc&) {
-            meetTrouble(*file, fmt::format("{}: a chunk needs more memory than this machine gives", source_->name()), false);
-        } catch (const std::exception& error) { meetTrouble(*file, fmt::format("{}: {}", source_->name(), error.what()), false); }
+            meetTrouble(*file,
+                        fmt::format("{}: a chunk needs more memory than this machine gives", source_->name()),
+                        false);
+        } catch (const std::exception& error) {
+            meetTrouble(*file, fmt::format("{}: {}", source_->name(), error.what()), false);
+        }
         lock.lock();
     }
 }
@@ -261,7 +274,8 @@ void ChunkLoader::load(std::size_t file, const std::vector<LeafLevel>& wishes) {
             }
         }
         std::vector<std::optional<LoadedPart>> parts(batch.size());
-        forBlocks(batch.size(), 1, settings_.threads, [&](std::size_t i, std::size_t) { parts[i] = read(decoded, batch[i]); });
+        forBlocks(batch.size(), 1, settings_.threads,
+                  [&](std::size_t i, std::size_t) { parts[i] = read(decoded, batch[i]); });
         const std::lock_guard lock(mutex_);
         count(std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
                               [](std::uint64_t sum, const auto& part) { return sum + part->splats; }));

@@ -88,7 +88,9 @@ private:
     };
 
     void run();
-    [[nodiscard]] const LodRange& rangeOf(LeafLevel at) const { return source_->leaves()[at.leaf].levels[at.level]; }
+    [[nodiscard]] const LodRange& rangeOf(LeafLevel at) const {
+        return source_->leaves()[at.leaf].levels[at.level];
+    }
     // With the mutex held. The file of the first wish that can be loaded.
     [[nodiscard]] std::optional<std::size_t> nextFile() const;
     [[nodiscard]] std::vector<LeafLevel> wishesIn(std::size_t file) const;

@@ -21,14 +21,17 @@ bool isStreamedScene(const std::string& source) {
     if (isBuiltin(source)) { return false; }
     // The content of an address is only known once it is fetched; only one whose name says so is taken for a
     // streamed scene.
-    if (isAddress(source)) { return source.substr(0, source.find_first_of("?#")).ends_with("/lod-meta.json"); }
+    if (isAddress(source)) {
+        return source.substr(0, source.find_first_of("?#")).ends_with("/lod-meta.json");
+    }
     std::error_code unreadable;
     if (std::filesystem::is_directory(source, unreadable)) { return isStreamedSogFolder(source); }
     InputFile file(source);
     return isStreamedSogFile(file);
 }
 
-ChunkSource::ChunkSource(const std::string& source, const WebSettings& web, const Progress& waiting) : name_(source) {
+ChunkSource::ChunkSource(const std::string& source, const WebSettings& web, const Progress& waiting)
+    : name_(source) {
     requireSogDecoder(source);
     std::error_code unreadable;
     if (isAddress(source)) {
@@ -50,7 +53,8 @@ ChunkSource::ChunkSource(const std::string& source, const WebSettings& web, cons
         environment_splats_ = environment->count();
         const auto file = static_cast<std::uint32_t>(chunks_->environmentIndex());
         if (environment_splats_ > 0) {
-            leaves_.push_back({glm::vec3(-kEverywhere), glm::vec3(kEverywhere), {{0, file, {0, environment_splats_}}}});
+            leaves_.push_back(
+                {glm::vec3(-kEverywhere), glm::vec3(kEverywhere), {{0, file, {0, environment_splats_}}}});
         }
     }
     while_waiting_ = {};

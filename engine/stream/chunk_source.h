@@ -42,7 +42,9 @@ public:
     void expect(std::span<const std::size_t> files) { chunks_->expect(files); }
     // Throws Error if it cannot be loaded or is broken.
     [[nodiscard]] SogSplats open(std::size_t file) { return chunks_->open(file); }
-    void requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const { chunks_->requireRange(file, range, splats); }
+    void requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const {
+        chunks_->requireRange(file, range, splats);
+    }
 
 private:
     std::string name_;

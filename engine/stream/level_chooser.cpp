@@ -42,8 +42,8 @@ double angleOutside(const Sphere& sphere, const Eye& eye, const Pose& camera_fro
     const double side_y = c.y > 0.0 ? (eye.size_px.y - k.cy) / k.fy : k.cy / k.fy;
     double edge = std::numbers::pi / 2.0;
     if (across > 0.0) {
-        const double inverse_tangent =
-            std::max(std::abs(c.x) / across / std::max(side_x, least), std::abs(c.y) / across / std::max(side_y, least));
+        const double inverse_tangent = std::max(std::abs(c.x) / across / std::max(side_x, least),
+                                                std::abs(c.y) / across / std::max(side_y, least));
         edge = std::atan(1.0 / inverse_tangent);
     }
     return std::max(0.0, from_axis - std::asin(sphere.radius / distance) - edge);
@@ -53,11 +53,14 @@ double distanceToBox(const LodLeaf& leaf, const glm::dvec3& point) {
     return glm::length(point - glm::clamp(point, glm::dvec3(leaf.low), glm::dvec3(leaf.high)));
 }
 
-std::uint64_t pagesOf(std::uint64_t splats, std::uint32_t page_splats) { return (splats + page_splats - 1) / page_splats; }
+std::uint64_t pagesOf(std::uint64_t splats, std::uint32_t page_splats) {
+    return (splats + page_splats - 1) / page_splats;
+}
 
 }  // namespace
 
-void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there) {
+void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings,
+                            const LevelsThere& there) {
     const std::vector<LodRange>& levels = leaves_[leaf].levels;
     const std::vector<float>& errors = leaves_[leaf].errors;
     const std::uint32_t before = choices_.levels[leaf];
@@ -66,7 +69,10 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
     const std::size_t first = steps_.size();
     for (std::uint32_t level = 0; level < levels.size(); ++level) {
         const std::uint64_t splats = levels[level].splats.count;
-        if (!there.has({leaf, level}, levels[level].file) || (steps_.size() > first && splats >= steps_.back().splats)) { continue; }
+        if (!there.has({leaf, level}, levels[level].file) ||
+            (steps_.size() > first && splats >= steps_.back().splats)) {
+            continue;
+        }
         steps_.push_back({0.0, leaf, level, 0, splats, pagesOf(splats, settings.page_splats)});
     }
     std::reverse(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.end());
@@ -78,15 +84,19 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
         Step step = steps_[i];
         const std::uint64_t splats = step.splats, pages = step.pages;
         step.order = static_cast<std::uint32_t>(i - first);
-        const double between = std::sqrt(static_cast<double>(splats) * static_cast<double>(step.order == 0 ? splats : splats_before));
+        const double between = std::sqrt(static_cast<double>(splats) *
+                                         static_cast<double>(step.order == 0 ? splats : splats_before));
         double seen = weight * area_px;
-        if (!is_first_) { seen *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept; }
+        if (!is_first_) {
+            seen *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept;
+        }
         step.worth = seen / between;
         const bool is_wrong = step.order > 0 && !errors.empty() && errors[level_before] > kMostError;
         const double finest_px = is_wrong ? kCloser * settings.finest_px : settings.finest_px;
         if (step.order > 0 && step.worth < finest_px * finest_px) { break; }
         if (step.order > 0 && !errors.empty()) {
-            const double less = std::max(0.0, static_cast<double>(errors[level_before]) - static_cast<double>(errors[step.level]));
+            const double less = std::max(
+                0.0, static_cast<double>(errors[level_before]) - static_cast<double>(errors[step.level]));
             step.worth = seen * (rate = std::min(rate, less / static_cast<double>(splats - splats_before)));
         }
         step.splats -= splats_before;
@@ -99,7 +109,8 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
     steps_.resize(kept);
 }
 
-const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there) {
+const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const ChoiceSettings& settings,
+                                         const LevelsThere& there) {
     is_first_ = choices_.levels.empty();
     choices_.levels.resize(leaves_.size(), LevelChoices::kNone);
     steps_.clear();
@@ -113,15 +124,21 @@ const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const Choice
     for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
         const Sphere sphere = around(leaves_[l]);
         double outside = std::numbers::pi;
-        for (std::size_t e = 0; e < eyes.size(); ++e) { outside = std::min(outside, angleOutside(sphere, eyes[e], cameras[e])); }
+        for (std::size_t e = 0; e < eyes.size(); ++e) {
+            outside = std::min(outside, angleOutside(sphere, eyes[e], cameras[e]));
+        }
         // Most of a leaf is farther away than its nearest point.
-        const double distance = std::max(distanceToBox(leaves_[l], middle) + 0.5 * sphere.radius, settings.nearest);
+        const double distance =
+            std::max(distanceToBox(leaves_[l], middle) + 0.5 * sphere.radius, settings.nearest);
         const double size_px = focal_px * 2.0 * sphere.radius / distance;
         // A leaf without extent is a pixel somewhere.
-        addSteps(l, std::max(size_px * size_px, 1.0), std::exp(-outside / settings.look_ahead_rad), settings, there);
+        addSteps(l, std::max(size_px * size_px, 1.0), std::exp(-outside / settings.look_ahead_rad), settings,
+                 there);
     }
     std::ranges::sort(steps_, [](const Step& a, const Step& b) {
-        const auto key = [](const Step& step) { return std::tuple(step.order > 0, -step.worth, step.leaf, step.order); };
+        const auto key = [](const Step& step) {
+            return std::tuple(step.order > 0, -step.worth, step.leaf, step.order);
+        };
         return key(a) < key(b);
     });
     std::vector<std::uint32_t> taken(leaves_.size(), 0);  // how many of its steps
@@ -130,13 +147,16 @@ const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const Choice
     choices_.finer.clear();
     choices_.splats = choices_.pages = 0;
     for (const Step& step : steps_) {
-        const bool fits = choices_.splats + step.splats <= settings.splats && choices_.pages + step.pages <= settings.pages;
+        const bool fits =
+            choices_.splats + step.splats <= settings.splats && choices_.pages + step.pages <= settings.pages;
         if (!fits || taken[step.leaf] != step.order) { continue; }
         ++taken[step.leaf];
         choices_.levels[step.leaf] = step.level;
         choices_.splats += step.splats;
         choices_.pages += step.pages;
-        if (step.order < 2) { (step.order == 0 ? choices_.coarsest : choices_.finer).push_back({step.leaf, step.level}); }
+        if (step.order < 2) {
+            (step.order == 0 ? choices_.coarsest : choices_.finer).push_back({step.leaf, step.level});
+        }
     }
     // The leaves that gain most by their first step are refined first; of the levels that they pass, only the
     // last is loaded.

@@ -68,7 +68,8 @@ public:
 
     // For the eyes of one head. A level that was chosen the time before is worth a quarter more, and one that
     // was not a fifth less, so that small motions change nothing. The same calls always give the same levels.
-    const LevelChoices& choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there = {});
+    const LevelChoices& choose(std::span<const Eye> eyes, const ChoiceSettings& settings,
+                               const LevelsThere& there = {});
 
 private:
     // A step of a leaf, from nothing or from the next coarser level that counts.
@@ -78,7 +79,8 @@ private:
         // In addition to the step before; all of the level's if order is 0.
         std::uint64_t splats = 0, pages = 0;
     };
-    void addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there);
+    void addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings,
+                  const LevelsThere& there);
 
     std::span<const LodLeaf> leaves_;
     LevelChoices choices_;

@@ -22,7 +22,8 @@ template <typename Question, typename Answer>
 class Mailbox {
 public:
     // `find` runs on the thread.
-    explicit Mailbox(std::function<Answer(const Question&)> find) : find_(std::move(find)), thread_([this] { run(); }) {}
+    explicit Mailbox(std::function<Answer(const Question&)> find)
+        : find_(std::move(find)), thread_([this] { run(); }) {}
     Mailbox(const Mailbox&) = delete;
     Mailbox& operator=(const Mailbox&) = delete;
     // Waits for an answer that is being found.

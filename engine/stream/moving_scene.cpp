@@ -22,7 +22,8 @@ constexpr std::uint32_t kSparePages = 8;
 
 }  // namespace
 
-MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress)
+MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSettings settings,
+                         const Progress& progress)
     : context_(context), series_(std::move(series)), settings_(std::move(settings)) {
     const auto drawn = [this](Scene scene, LoadNotes& notes) {
         if (settings_.draw_as) { settings_.draw_as(scene, notes); }
@@ -43,9 +44,10 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
     shown_ = makeSceneFrame(first_, traits_);
     const auto pages = static_cast<double>(shown_.size());
     ResidentScene::Options options;
-    options.capacity_pages = static_cast<std::uint32_t>(
-                                 std::min(pages * series_.growth() * kSpareRoom, double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
-                             kSparePages;
+    options.capacity_pages =
+        static_cast<std::uint32_t>(std::min(pages * series_.growth() * kSpareRoom,
+                                            double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
+        kSparePages;
     // A scene frame is shown as a whole or not yet.
     options.most_bytes_a_frame = options.capacity_pages * ChunkLayout(gpu::kPageSplats, traits_).bytes;
     resident_ = std::make_unique<ResidentScene>(context_, traits_, options);
@@ -65,7 +67,9 @@ MovingScene::Moment MovingScene::momentAt(double time_s) const {
 }
 
 // A loop of files need not end as it begins.
-std::size_t MovingScene::sceneAfter(std::size_t frame) const { return series_.sceneOf(std::min(frame + 1, series_.size() - 1)); }
+std::size_t MovingScene::sceneAfter(std::size_t frame) const {
+    return series_.sceneOf(std::min(frame + 1, series_.size() - 1));
+}
 
 bool MovingScene::isBetween(Moment moment) const {
     return moment.share > 0.0f && sceneAfter(moment.frame) != series_.sceneOf(moment.frame);
@@ -94,11 +98,14 @@ std::optional<MovingScene::Question> MovingScene::questionFor(Moment moment) con
 
 MovingScene::Step MovingScene::stepTo(const Question& question) const {
     const SceneFrame* const next = question.second ? &question.second->splats : nullptr;
-    return {question.moment, stepBetween(shown_, question.first->splats, traits_, next, question.moment.share)};
+    return {question.moment,
+            stepBetween(shown_, question.first->splats, traits_, next, question.moment.share)};
 }
 
 void MovingScene::ask(Moment moment) {
-    if (std::optional<Question> question = questionFor(moment)) { is_asked_ = steps_->ask(*std::move(question)); }
+    if (std::optional<Question> question = questionFor(moment)) {
+        is_asked_ = steps_->ask(*std::move(question));
+    }
 }
 
 void MovingScene::dropSteps() {
@@ -150,7 +157,9 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
     }
 
     const auto frames = static_cast<double>(series_.size());
-    const auto placeOf = [](Moment moment) { return static_cast<double>(moment.frame) + static_cast<double>(moment.share); };
+    const auto placeOf = [](Moment moment) {
+        return static_cast<double>(moment.frame) + static_cast<double>(moment.share);
+    };
     // How far one is behind another, the shorter way around the loop.
     const auto behind = [&](Moment moment, Moment other) {
         const double distance = placeOf(other) - placeOf(moment);
@@ -190,7 +199,9 @@ void MovingScene::settle(std::span<const Eye> /*eyes*/, const Progress& progress
 
 bool MovingScene::isSettled() const { return moment_ == momentAt(time_s_) && !resident_->hasChanges(); }
 
-StreamCounters MovingScene::counters() const { return {resident_->splatsAdded(), resident_->splatsShown(), parts_.size(), 0, late_count_}; }
+StreamCounters MovingScene::counters() const {
+    return {resident_->splatsAdded(), resident_->splatsShown(), parts_.size(), 0, late_count_};
+}
 
 std::vector<std::string> MovingScene::takeLines(Waits waits) {
     std::vector<std::string> lines = std::exchange(lines_, {});

@@ -29,7 +29,8 @@ class MovingScene final : public LiveScene {
 public:
     // Reads the first frame; see notes(). Throws Error if it cannot be loaded, or the device lacks memory for
     // it.
-    MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress = {});
+    MovingScene(const Context& context, SceneSeries series, MovingSettings settings,
+                const Progress& progress = {});
 
     [[nodiscard]] const std::string& name() const override { return series_.name(); }
     [[nodiscard]] const GpuScene& scene() const override { return resident_->scene(); }

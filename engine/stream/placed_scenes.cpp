@@ -16,7 +16,9 @@ namespace {
 constexpr std::size_t kMostChangesRemembered = 4096;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-gpu::ScenePage nowhere() { return {.low = gpu::vec3(kFar), .reach = 0.0f, .high = gpu::vec3(-kFar), .count = 0}; }
+gpu::ScenePage nowhere() {
+    return {.low = gpu::vec3(kFar), .reach = 0.0f, .high = gpu::vec3(-kFar), .count = 0};
+}
 
 void widen(gpu::ScenePage& all, const gpu::ScenePage& page) {
     all.low = glm::min(all.low, page.low);
@@ -49,7 +51,8 @@ Similarity allFrom(const PlacedScene& placed, const glm::dvec3& origin) {
 
 }  // namespace
 
-PlacedScenes::PlacedScenes(const Context& context, std::span<const PlacedScene> scenes) : placed_(scenes.begin(), scenes.end()) {
+PlacedScenes::PlacedScenes(const Context& context, std::span<const PlacedScene> scenes)
+    : placed_(scenes.begin(), scenes.end()) {
     check(!scenes.empty(), "there are no scenes to place");
     SceneTraits& traits = scene_.traits_;
     traits = scenes[0].scene->traits();
@@ -57,15 +60,19 @@ PlacedScenes::PlacedScenes(const Context& context, std::span<const PlacedScene> 
     std::size_t pages = 0;
     for (const PlacedScene& placed : scenes) {
         const SceneTraits& its = placed.scene->traits();
-        check(its.splat_kind == traits.splat_kind && its.is_dimmed == traits.is_dimmed && its.is_light == traits.is_light,
-              "scenes of one frame must be all discs, all Gaussians, or all Gaussians with antialiasing, and of colours encoded alike");
+        check(its.splat_kind == traits.splat_kind && its.is_dimmed == traits.is_dimmed &&
+                  its.is_light == traits.is_light,
+              "scenes of one frame must be all discs, all Gaussians, or all Gaussians with antialiasing, and "
+              "of colours encoded alike");
         traits.sh_degree = std::max(traits.sh_degree, its.sh_degree);
         if (its.usual_order == Order::kDistance) { traits.usual_order = Order::kDistance; }
-        parts_.push_back({.first_page = pages, .changes_known = placed.scene->changesRecorded(), .bounds = nowhere()});
+        parts_.push_back(
+            {.first_page = pages, .changes_known = placed.scene->changesRecorded(), .bounds = nowhere()});
         pages += placed.scene->table().chunks.size();
     }
-    check(pages <= gpu::kMaxItems / gpu::kPageSplats, "scenes of one frame have {} pages of {} splats, at most {} can be shown", pages,
-          gpu::kPageSplats, gpu::kMaxItems / gpu::kPageSplats);
+    check(pages <= gpu::kMaxItems / gpu::kPageSplats,
+          "scenes of one frame have {} pages of {} splats, at most {} can be shown", pages, gpu::kPageSplats,
+          gpu::kMaxItems / gpu::kPageSplats);
     const std::size_t places = std::max<std::size_t>(pages, 1);
     scene_.table_.chunks.resize(places);
     scene_.table_.bounds.resize(places);
@@ -92,7 +99,8 @@ bool PlacedScenes::isOf(std::span<const PlacedScene> scenes) const {
 
 void PlacedScenes::place(std::span<const PlacedScene> scenes) {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-        if (scenes[p].world_from_scene != placed_[p].world_from_scene || scenes[p].is_shown != placed_[p].is_shown) {
+        if (scenes[p].world_from_scene != placed_[p].world_from_scene ||
+            scenes[p].is_shown != placed_[p].is_shown) {
             parts_[p].is_dirty = true;
         }
         placed_[p] = scenes[p];
@@ -102,7 +110,8 @@ void PlacedScenes::place(std::span<const PlacedScene> scenes) {
 gpu::Placement PlacedScenes::placementOf(const PlacedScene& placed) const {
     const Similarity all = allFrom(placed, origin_);
     const glm::dmat3 turn = glm::mat3_cast(all.orientation);
-    return {gpu::vec3(turn[0]), gpu::vec3(turn[1]), gpu::vec3(turn[2]), gpu::vec3(all.position), static_cast<float>(all.scale)};
+    return {gpu::vec3(turn[0]), gpu::vec3(turn[1]), gpu::vec3(turn[2]), gpu::vec3(all.position),
+            static_cast<float>(all.scale)};
 }
 
 void PlacedScenes::makePages(std::size_t index) {
@@ -127,7 +136,8 @@ void PlacedScenes::noteChanges(std::size_t index) {
     if (part.changes_known == scene.changesRecorded()) { return; }
     if (const auto changes = scene.changesSince(part.changes_known); changes && !part.is_dirty) {
         for (const SceneChange& change : *changes) {
-            const gpu::ScenePage box = placedBox(allFrom(placed_[index], origin_), {change.low, 0.0f, change.high, 1});
+            const gpu::ScenePage box =
+                placedBox(allFrom(placed_[index], origin_), {change.low, 0.0f, change.high, 1});
             scene_.changes_.push_back({box.low, box.high, change.amount});
         }
         makePages(index);
@@ -141,7 +151,8 @@ void PlacedScenes::recordChanges(Commands& commands) {
     if (scene_.changes_.size() > kMostChangesRemembered) {
         const std::size_t forgotten = scene_.changes_.size() / 2;
         scene_.changes_forgotten_ += forgotten;
-        scene_.changes_.erase(scene_.changes_.begin(), scene_.changes_.begin() + static_cast<std::ptrdiff_t>(forgotten));
+        scene_.changes_.erase(scene_.changes_.begin(),
+                              scene_.changes_.begin() + static_cast<std::ptrdiff_t>(forgotten));
     }
     std::vector<bool> differs(parts_.size());
     for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -163,15 +174,17 @@ void PlacedScenes::recordChanges(Commands& commands) {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
         const std::size_t first = parts_[p].first_page, pages = placed_[p].scene->table().chunks.size();
         if (differs[p] && pages > 0) {
-            commands.update(scene_.chunk_table_, &scene_.table_.chunks[first], pages * sizeof(gpu::SceneChunk),
-                            first * sizeof(gpu::SceneChunk));
-            commands.update(page_table_, &scene_.table_.bounds[first], pages * sizeof(gpu::ScenePage), first * sizeof(gpu::ScenePage));
+            commands.update(scene_.chunk_table_, &scene_.table_.chunks[first],
+                            pages * sizeof(gpu::SceneChunk), first * sizeof(gpu::SceneChunk));
+            commands.update(page_table_, &scene_.table_.bounds[first], pages * sizeof(gpu::ScenePage),
+                            first * sizeof(gpu::ScenePage));
         }
         if (!placed_[p].is_shown) { continue; }
         held += placed_[p].scene->splatsHeld();
         pages_held += pages;
     }
-    scene_.splats_held_ = scene_.splats_coming_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(held, gpu::kMaxItems));
+    scene_.splats_held_ = scene_.splats_coming_ =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(held, gpu::kMaxItems));
     scene_.pages_held_ = static_cast<std::uint32_t>(pages_held);
 }
 

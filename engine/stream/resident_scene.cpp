@@ -23,7 +23,8 @@ constexpr std::size_t kMostChangesKept = 65536;
 class CopyParts {
 public:
     void add(std::uint64_t from, std::uint64_t to, std::uint64_t bytes) {
-        if (!parts_.empty() && parts_.back().srcOffset + parts_.back().size == from && parts_.back().dstOffset + parts_.back().size == to) {
+        if (!parts_.empty() && parts_.back().srcOffset + parts_.back().size == from &&
+            parts_.back().dstOffset + parts_.back().size == to) {
             parts_.back().size += bytes;
         } else {
             parts_.emplace_back(from, to, bytes);
@@ -45,21 +46,23 @@ private:
 ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, const Options& options)
     : page_bytes_(ChunkLayout(gpu::kPageSplats, traits).bytes) {
     const std::uint32_t capacity = options.capacity_pages;
-    check(capacity > 0 && capacity <= gpu::kMaxItems / gpu::kPageSplats, "{} pages of {} splats, 1 to {} can be held", capacity,
-          gpu::kPageSplats, gpu::kMaxItems / gpu::kPageSplats);
+    check(capacity > 0 && capacity <= gpu::kMaxItems / gpu::kPageSplats,
+          "{} pages of {} splats, 1 to {} can be held", capacity, gpu::kPageSplats,
+          gpu::kMaxItems / gpu::kPageSplats);
     const std::uint64_t table_bytes = capacity * kEntryBytes, most_bytes = context.maxAllocationBytes();
     check(page_bytes_ + table_bytes <= most_bytes,
-          "{}: a page of {} splats and a table of {} pages need {} bytes, one allocation holds at most {}", context.deviceName(),
-          gpu::kPageSplats, capacity, page_bytes_ + table_bytes, most_bytes);
+          "{}: a page of {} splats and a table of {} pages need {} bytes, one allocation holds at most {}",
+          context.deviceName(), gpu::kPageSplats, capacity, page_bytes_ + table_bytes, most_bytes);
     // Staging is one allocation, and rounded up.
     const std::uint64_t staged_bytes = std::min(options.most_bytes_a_frame, (most_bytes - table_bytes) / 2);
     most_pages_a_frame_ = std::max<std::uint64_t>(staged_bytes / page_bytes_, 1);
-    pages_per_buffer_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(context.maxAllocationBytes() / page_bytes_, capacity));
+    pages_per_buffer_ = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(context.maxAllocationBytes() / page_bytes_, capacity));
     const ChunkLayout layout(gpu::kPageSplats, traits);
     for (std::uint32_t first = 0; first < capacity; first += pages_per_buffer_) {
         const std::uint32_t pages = std::min(pages_per_buffer_, capacity - first);
-        const Buffer& buffer =
-            scene_.buffers_.emplace_back(context, fmt::format("scene pages {}", scene_.buffers_.size()), pages * page_bytes_);
+        const Buffer& buffer = scene_.buffers_.emplace_back(
+            context, fmt::format("scene pages {}", scene_.buffers_.size()), pages * page_bytes_);
         for (std::uint32_t page = 0; page < pages; ++page) {
             scene_.table_.chunks.push_back(layout.chunkAt(buffer, page * page_bytes_, 0.0f));
         }
@@ -169,7 +172,8 @@ std::vector<ResidentScene::PageCopy> ResidentScene::takeWaiting() {
     while (!waiting_.empty() && copies.size() < most_pages_a_frame_) {
         PartState& state = parts_[waiting_.front()];
         const std::size_t done = state.pages.size() - state.pages_to_copy;
-        const std::size_t now = std::min<std::size_t>(state.pages_to_copy, most_pages_a_frame_ - copies.size());
+        const std::size_t now =
+            std::min<std::size_t>(state.pages_to_copy, most_pages_a_frame_ - copies.size());
         for (std::size_t i = done; i < done + now; ++i) {
             copies.push_back({state.pages[i], state.packed.bytes().data() + i * page_bytes_});
         }
@@ -189,8 +193,8 @@ void ResidentScene::recordChanges(Commands& commands) {
     if (!hasChanges()) { return; }
     std::uint64_t waiting_pages = 0;
     for (const Part part : waiting_) { waiting_pages += parts_[part].pages_to_copy; }
-    const Buffer& staging =
-        commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ + scene_.table_.bounds.size() * kEntryBytes);
+    const Buffer& staging = commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ +
+                                             scene_.table_.bounds.size() * kEntryBytes);
     const std::vector<PageCopy> copies = takeWaiting();
     std::ranges::sort(changed_);
     std::uint8_t* const to = staging.mapped<std::uint8_t>().data();
@@ -202,11 +206,13 @@ void ResidentScene::recordChanges(Commands& commands) {
     };
     std::vector<CopyParts> of_buffers(scene_.buffers_.size());
     for (const PageCopy& copy : copies) {
-        stage(of_buffers[copy.page / pages_per_buffer_], copy.from, copy.page % pages_per_buffer_ * page_bytes_, page_bytes_);
+        stage(of_buffers[copy.page / pages_per_buffer_], copy.from,
+              copy.page % pages_per_buffer_ * page_bytes_, page_bytes_);
     }
     CopyParts of_chunks, of_pages;
     for (const std::uint32_t page : changed_) {
-        stage(of_chunks, &scene_.table_.chunks[page], page * sizeof(gpu::SceneChunk), sizeof(gpu::SceneChunk));
+        stage(of_chunks, &scene_.table_.chunks[page], page * sizeof(gpu::SceneChunk),
+              sizeof(gpu::SceneChunk));
     }
     for (const std::uint32_t page : changed_) {
         stage(of_pages, &scene_.table_.bounds[page], page * sizeof(gpu::ScenePage), sizeof(gpu::ScenePage));
@@ -221,7 +227,9 @@ void ResidentScene::recordChanges(Commands& commands) {
     scene_.changes_.insert(scene_.changes_.end(), scene_.changes_noted_.begin(), scene_.changes_noted_.end());
     scene_.changes_noted_.clear();
     bool first = true;
-    for (std::size_t b = 0; b < of_buffers.size(); ++b) { of_buffers[b].record(commands, staging, scene_.buffers_[b], first); }
+    for (std::size_t b = 0; b < of_buffers.size(); ++b) {
+        of_buffers[b].record(commands, staging, scene_.buffers_[b], first);
+    }
     of_chunks.record(commands, staging, scene_.chunk_table_, first);
     of_pages.record(commands, staging, page_table_, first);
 }

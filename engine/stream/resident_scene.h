@@ -31,7 +31,9 @@ public:
     // The scene that frames render: they ask it for changes.
     [[nodiscard]] const GpuScene& scene() const { return scene_; }
     [[nodiscard]] const SceneTraits& traits() const { return scene_.traits_; }
-    [[nodiscard]] std::uint32_t capacityPages() const { return static_cast<std::uint32_t>(scene_.table_.bounds.size()); }
+    [[nodiscard]] std::uint32_t capacityPages() const {
+        return static_cast<std::uint32_t>(scene_.table_.bounds.size());
+    }
     [[nodiscard]] std::uint32_t freePages() const { return static_cast<std::uint32_t>(free_.size()); }
     // Of all parts, and of those that frames see.
     [[nodiscard]] std::uint32_t splatsAdded() const { return scene_.splats_coming_; }

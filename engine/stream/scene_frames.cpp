@@ -29,7 +29,8 @@ public:
         return {q.w, q.x, q.y, q.z};
     }
     [[nodiscard]] glm::vec3 scales(std::size_t i) const {
-        return {read<glm::vec2>(layout_.scales, i), has_thicknesses_ ? read<float>(layout_.thicknesses, i) : 0.0f};
+        return {read<glm::vec2>(layout_.scales, i),
+                has_thicknesses_ ? read<float>(layout_.thicknesses, i) : 0.0f};
     }
     [[nodiscard]] float opacity(std::size_t i) const { return read<float>(layout_.opacities, i); }
 
@@ -38,7 +39,8 @@ public:
             return std::memcmp(bytes_ + array + i * bytes, other.bytes_ + array + i * bytes, bytes) == 0;
         };
         return equal(layout_.positions, sizeof(glm::vec3)) && equal(layout_.rotations, sizeof(glm::vec4)) &&
-               equal(layout_.scales, sizeof(glm::vec2)) && (!has_thicknesses_ || equal(layout_.thicknesses, sizeof(float))) &&
+               equal(layout_.scales, sizeof(glm::vec2)) &&
+               (!has_thicknesses_ || equal(layout_.thicknesses, sizeof(float))) &&
                equal(layout_.opacities, sizeof(float)) && equal(layout_.base_colours, sizeof(glm::uvec2)) &&
                equal(layout_.sh, layout_.sh_bytes_per_splat);
     }
@@ -57,7 +59,8 @@ private:
 };
 
 bool isSame(const PackedPages& a, const PackedPages& b) {
-    return a.splatCount() == b.splatCount() && std::memcmp(a.bytes().data(), b.bytes().data(), a.bytes().size()) == 0;
+    return a.splatCount() == b.splatCount() &&
+           std::memcmp(a.bytes().data(), b.bytes().data(), a.bytes().size()) == 0;
 }
 
 template <typename T>
@@ -67,11 +70,13 @@ T at(std::span<const std::uint8_t> bytes, std::uint64_t offset) {
     return value;
 }
 
-PackedPages pageBetween(const PackedPages& one, const PackedPages& other, float share, const ChunkLayout& layout,
-                        const SceneTraits& traits) {
+PackedPages pageBetween(const PackedPages& one, const PackedPages& other, float share,
+                        const ChunkLayout& layout, const SceneTraits& traits) {
     const std::span<const std::uint8_t> from = one.bytes(), to = other.bytes();
     std::vector<std::uint8_t> bytes(from.begin(), from.end());
-    const auto put = [&]<typename T>(std::uint64_t offset, const T& value) { std::memcpy(bytes.data() + offset, &value, sizeof(T)); };
+    const auto put = [&]<typename T>(std::uint64_t offset, const T& value) {
+        std::memcpy(bytes.data() + offset, &value, sizeof(T));
+    };
     // Equal values stay as they are, to the bit.
     const auto mixFloats = [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t offset = begin; offset < end; offset += sizeof(float)) {
@@ -90,7 +95,9 @@ PackedPages pageBetween(const PackedPages& one, const PackedPages& other, float 
     }
     for (std::uint64_t offset = layout.base_colours; offset < layout.bytes; offset += sizeof(std::uint32_t)) {
         const auto a = at<std::uint32_t>(from, offset), b = at<std::uint32_t>(to, offset);
-        if (a != b) { put(offset, glm::packHalf2x16(glm::mix(glm::unpackHalf2x16(a), glm::unpackHalf2x16(b), share))); }
+        if (a != b) {
+            put(offset, glm::packHalf2x16(glm::mix(glm::unpackHalf2x16(a), glm::unpackHalf2x16(b), share)));
+        }
     }
     PageBounds bounds;
     const PageReader reader(bytes, layout, traits);
@@ -106,7 +113,8 @@ public:
     void add(const PageReader& reader, std::size_t i) {
         const float opacity = reader.opacity(i);
         if (!(opacity >= gpu::kMinAlpha)) { return; }
-        const glm::vec3 centre = reader.centre(i), half(halfExtentOf(reader.rotation(i), reader.scales(i), opacity));
+        const glm::vec3 centre = reader.centre(i),
+                        half(halfExtentOf(reader.rotation(i), reader.scales(i), opacity));
         boxes_.push_back({{centre - half, centre + half, std::min(opacity, 1.0f)}, centre});
         low_ = glm::min(low_, centre);
         high_ = glm::max(high_, centre);
@@ -116,9 +124,11 @@ public:
         std::array<std::optional<SceneChange>, kMostBoxes> cells;
         const glm::vec3 size = glm::max(high_ - low_, glm::vec3(std::numeric_limits<float>::min()));
         for (const Box& box : boxes_) {
-            const glm::vec3 place = glm::clamp((box.centre - low_) / size, 0.0f, 1.0f) * static_cast<float>(kBoxesAside);
+            const glm::vec3 place =
+                glm::clamp((box.centre - low_) / size, 0.0f, 1.0f) * static_cast<float>(kBoxesAside);
             const glm::ivec3 cell = glm::min(glm::ivec3(place), kBoxesAside - 1);
-            std::optional<SceneChange>& all = cells[static_cast<std::size_t>((cell.z * kBoxesAside + cell.y) * kBoxesAside + cell.x)];
+            std::optional<SceneChange>& all =
+                cells[static_cast<std::size_t>((cell.z * kBoxesAside + cell.y) * kBoxesAside + cell.x)];
             if (!all) { all = box.change; }
             all->low = glm::min(all->low, box.change.low);
             all->high = glm::max(all->high, box.change.high);
@@ -154,7 +164,9 @@ std::uint64_t splatsIn(const SceneFrame& frame) {
     return frame.empty() ? 0 : (frame.size() - 1) * kSplatsAPage + frame.back().splatCount();
 }
 
-std::uint64_t bytesIn(const SceneFrame& frame) { return frame.empty() ? 0 : frame.size() * frame.front().bytes().size(); }
+std::uint64_t bytesIn(const SceneFrame& frame) {
+    return frame.empty() ? 0 : frame.size() * frame.front().bytes().size();
+}
 
 bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits) {
     const std::uint64_t splats = splatsIn(from);
@@ -166,20 +178,23 @@ bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits&
     };
     std::vector<float> moved, apart;
     for (std::uint64_t sample = 0; sample < kSamples; ++sample) {
-        const std::uint64_t splat = sample * splats / kSamples, other = (splat + splats / 2 + 97 * sample) % splats;
+        const std::uint64_t splat = sample * splats / kSamples,
+                            other = (splat + splats / 2 + 97 * sample) % splats;
         moved.push_back(glm::distance(centreOf(from, splat), centreOf(to, splat)));
         apart.push_back(glm::distance(centreOf(from, splat), centreOf(from, other)));
     }
     // All but a few: a splat that turns up elsewhere would be seen flying there.
     const auto at = [](std::vector<float>& values, double share) {
-        const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+        const auto place =
+            values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
         std::ranges::nth_element(values, place);
         return static_cast<double>(*place);
     };
     return at(moved, 0.9) <= kNearbyShare * at(apart, 0.5);
 }
 
-FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits, const SceneFrame* next, float share) {
+FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits,
+                      const SceneFrame* next, float share) {
     const ChunkLayout layout(kSplatsAPage, traits);
     const bool is_between = next != nullptr && correspond(to, *next, traits);
     FrameStep step{splatsIn(to), {}, {}, {}};
@@ -195,11 +210,13 @@ FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneT
         if (old != nullptr && now != nullptr && isSame(*old, *now)) { continue; }
         step.pages.push_back(static_cast<std::uint32_t>(p));
         const auto readerOf = [&](const PackedPages* page) {
-            return PageReader(page == nullptr ? std::span<const std::uint8_t>() : page->bytes(), layout, traits);
+            return PageReader(page == nullptr ? std::span<const std::uint8_t>() : page->bytes(), layout,
+                              traits);
         };
         const PageReader was_there = readerOf(old), is_there = readerOf(now);
         for (std::size_t i = 0; i < kSplatsAPage; ++i) {
-            const bool was = old != nullptr && i < old->splatCount(), is = now != nullptr && i < now->splatCount();
+            const bool was = old != nullptr && i < old->splatCount(),
+                       is = now != nullptr && i < now->splatCount();
             if (was && is && was_there.isSame(is_there, i)) { continue; }
             if (was) { boxes.add(was_there, i); }
             if (is) { boxes.add(is_there, i); }

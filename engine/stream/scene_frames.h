@@ -35,7 +35,7 @@ inline constexpr int kBoxesAside = 12;
 inline constexpr std::size_t kMostBoxes = std::size_t{kBoxesAside} * kBoxesAside * kBoxesAside;
 // To a frame or, if `next` corresponds to it, to the interpolation `share` of the way from it to that one:
 // every value linearly, and rotations along the shorter of two ways, with unit length.
-FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits, const SceneFrame* next = nullptr,
-                      float share = 0.0f);
+FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits,
+                      const SceneFrame* next = nullptr, float share = 0.0f);
 
 }  // namespace binosplat

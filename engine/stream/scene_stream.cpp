@@ -87,18 +87,25 @@ SceneStream::SceneStream(const Context& context, std::unique_ptr<ChunkSource> so
         most_pages += pages;
         largest = std::max(largest, pages);
     }
-    if (settings_.splat_budget > 0) { most_pages = std::min(most_pages, pagesOf(settings_.splat_budget) + tree.size()); }
+    if (settings_.splat_budget > 0) {
+        most_pages = std::min(most_pages, pagesOf(settings_.splat_budget) + tree.size());
+    }
     std::uint64_t memory_bytes = settings_.memory_bytes;
     if (memory_bytes == 0) {
         memory_bytes = context.deviceMemoryBytes() / 2;
-        if (context.memoryLimitBytes() > 0) { memory_bytes = std::min(memory_bytes, context.memoryLimitBytes() / 5 * 2); }
+        if (context.memoryLimitBytes() > 0) {
+            memory_bytes = std::min(memory_bytes, context.memoryLimitBytes() / 5 * 2);
+        }
     }
     page_bytes_ = ChunkLayout(kPageSplats, traits).bytes + sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
-    const std::uint64_t affordable = std::min<std::uint64_t>(memory_bytes / page_bytes_, gpu::kMaxItems / kPageSplats);
+    const std::uint64_t affordable =
+        std::min<std::uint64_t>(memory_bytes / page_bytes_, gpu::kMaxItems / kPageSplats);
     const std::uint64_t wished = most_pages + std::max(largest, most_pages / 8);
     const std::uint64_t capacity = std::max<std::uint64_t>(std::min(affordable, wished), 1);
     choice_.pages =
-        affordable >= wished ? most_pages : std::max<std::uint64_t>(capacity - std::min(capacity / 2, std::max(largest, capacity / 8)), 1);
+        affordable >= wished
+            ? most_pages
+            : std::max<std::uint64_t>(capacity - std::min(capacity / 2, std::max(largest, capacity / 8)), 1);
     choice_.page_splats = gpu::kPageSplats;
     choice_.splats = settings_.splat_budget > 0 ? settings_.splat_budget : ~std::uint64_t{0};
     choice_.look_ahead_rad = settings_.look_ahead_rad;
@@ -121,16 +128,18 @@ void SceneStream::setSplatBudget(std::uint64_t splats) { choice_.splats = splats
 
 std::vector<LeafLevel> SceneStream::missing(const std::vector<LeafLevel>& chosen) const {
     std::vector<LeafLevel> wishes;
-    std::ranges::copy_if(chosen, std::back_inserter(wishes),
-                         [&](LeafLevel at) { return !leaves_->has(at) && std::ranges::find(held_, at, &LoadedPart::at) == held_.end(); });
+    std::ranges::copy_if(chosen, std::back_inserter(wishes), [&](LeafLevel at) {
+        return !leaves_->has(at) && std::ranges::find(held_, at, &LoadedPart::at) == held_.end();
+    });
     return wishes;
 }
 
 void SceneStream::wish(Waits waits, bool coarsest_only) {
     std::vector<LeafLevel> coarsest, finer;
     // A leaf that shows something already needs no coarse level first.
-    std::ranges::copy_if(chosen_.coarsest, std::back_inserter(coarsest),
-                         [&](LeafLevel at) { return leaves_->isEmpty(at.leaf) || chosen_.levels[at.leaf] == at.level; });
+    std::ranges::copy_if(chosen_.coarsest, std::back_inserter(coarsest), [&](LeafLevel at) {
+        return leaves_->isEmpty(at.leaf) || chosen_.levels[at.leaf] == at.level;
+    });
     if (!coarsest_only) {
         finer = chosen_.finer;
         // Leaves that are to have fewer splats make space for the others.
@@ -179,7 +188,8 @@ void SceneStream::update(std::span<const Eye> eyes, double step_seconds) {
     }
     if (!chosen_.levels.empty()) {
         takeLoaded(false);
-        leaves_->step(static_cast<float>(settings_.fade_seconds > 0.0 ? step_seconds / settings_.fade_seconds : 1.0));
+        leaves_->step(
+            static_cast<float>(settings_.fade_seconds > 0.0 ? step_seconds / settings_.fade_seconds : 1.0));
         if (has_wishes_) { wish(Waits::kNever); }
     }
     ask(eyes);
@@ -189,7 +199,9 @@ void SceneStream::ask(std::span<const Eye> eyes) {
     const std::optional<std::vector<bool>> broken = loader_->brokenFiles(Waits::kNever);
     if (!broken) { return; }
     LevelQuestion question{{eyes.begin(), eyes.end()}, choice_, {}};
-    if (std::ranges::find(*broken, true) != broken->end()) { question.there = {*broken, leaves_->loadedLevels()}; }
+    if (std::ranges::find(*broken, true) != broken->end()) {
+        question.there = {*broken, leaves_->loadedLevels()};
+    }
     if (asked_ && isSame(*asked_, question)) { return; }
     answered_ = false;
     if (planner_->ask(LevelQuestion(question))) { asked_ = std::move(question); }
@@ -198,7 +210,8 @@ void SceneStream::ask(std::span<const Eye> eyes) {
 // The rest comes with the next frame, which then knows where it is.
 void SceneStream::flushIfMuch() {
     const ResidentScene& resident = leaves_->resident();
-    const std::uint64_t waiting = resident.splatsAdded() - std::min(resident.splatsAdded(), resident.splatsShown());
+    const std::uint64_t waiting =
+        resident.splatsAdded() - std::min(resident.splatsAdded(), resident.splatsShown());
     if (waiting * page_bytes_ / kPageSplats > bytes_a_frame_ / 2) { leaves_->flush(context_); }
 }
 
@@ -224,13 +237,17 @@ void SceneStream::settleChosen(std::span<const Eye> eyes, bool coarsest_only, co
     flushIfMuch();
 }
 
-void SceneStream::settle(std::span<const Eye> eyes, const Progress& progress) { settleChosen(eyes, false, progress); }
+void SceneStream::settle(std::span<const Eye> eyes, const Progress& progress) {
+    settleChosen(eyes, false, progress);
+}
 
-void SceneStream::settleCoarsest(std::span<const Eye> eyes, const Progress& progress) { settleChosen(eyes, true, progress); }
+void SceneStream::settleCoarsest(std::span<const Eye> eyes, const Progress& progress) {
+    settleChosen(eyes, true, progress);
+}
 
 bool SceneStream::isSettled() const {
-    return answered_ && !has_wishes_ && held_.empty() && !leaves_->isExchanging() && !leaves_->resident().hasChanges() &&
-           loader_->isDone(Waits::kNever);
+    return answered_ && !has_wishes_ && held_.empty() && !leaves_->isExchanging() &&
+           !leaves_->resident().hasChanges() && loader_->isDone(Waits::kNever);
 }
 
 double SceneStream::share() const {

@@ -55,7 +55,9 @@ public:
     [[nodiscard]] double share() const override;
     [[nodiscard]] StreamCounters counters() const override;
     [[nodiscard]] std::optional<LoaderWork> tryWork() const { return loader_->tryWork(); }
-    [[nodiscard]] std::vector<std::string> takeLines(Waits waits) override { return loader_->takeLines(waits); }
+    [[nodiscard]] std::vector<std::string> takeLines(Waits waits) override {
+        return loader_->takeLines(waits);
+    }
 
 private:
     // The chosen levels that are not loaded, to be requested.

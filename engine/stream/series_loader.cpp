@@ -86,14 +86,17 @@ std::size_t SeriesLoader::orderOf(std::size_t scene) const {
 }
 
 std::optional<std::size_t> SeriesLoader::next() {
-    const auto found = std::ranges::find_if(
-        wanted_, [&](std::size_t scene) { return !kept_.contains(scene) && !troubles_.contains(scene) && !reading_[scene]; });
+    const auto found = std::ranges::find_if(wanted_, [&](std::size_t scene) {
+        return !kept_.contains(scene) && !troubles_.contains(scene) && !reading_[scene];
+    });
     if (found == wanted_.end()) { return std::nullopt; }
     const auto order = static_cast<std::size_t>(found - wanted_.begin());
     // Scenes that are being read have no bytes yet.
     const auto under_way = static_cast<std::uint64_t>(std::ranges::count(reading_, true));
     while (bytes_ + (under_way + 1) * largest_ > settings_.most_bytes) {
-        const auto orderToGo = [&](const auto& kept) { return kept.second.holders > 0 ? 0 : orderOf(kept.first); };
+        const auto orderToGo = [&](const auto& kept) {
+            return kept.second.holders > 0 ? 0 : orderOf(kept.first);
+        };
         const auto last = std::ranges::max_element(kept_, {}, orderToGo);
         if (last != kept_.end() && orderToGo(*last) > order && orderToGo(*last) >= kLeastKept) {
             bytes_ -= bytesIn(last->second.splats);

@@ -6,14 +6,19 @@
 
 namespace binosplat {
 
-ShownLeaves::ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options,
-                         std::span<const LodLeaf> leaves)
-    : resident_(context, traits, options), tree_(leaves), leaves_(leaves.size()), wanted_(leaves.size(), LevelChoices::kNone) {}
+ShownLeaves::ShownLeaves(const Context& context, const SceneTraits& traits,
+                         const ResidentScene::Options& options, std::span<const LodLeaf> leaves)
+    : resident_(context, traits, options),
+      tree_(leaves),
+      leaves_(leaves.size()),
+      wanted_(leaves.size(), LevelChoices::kNone) {}
 
 void ShownLeaves::want(const std::vector<std::uint32_t>& levels) {
     splats_wanted_ = 0;
     for (std::uint32_t leaf = 0; leaf < tree_.size(); ++leaf) {
-        if (std::exchange(wanted_[leaf], levels[leaf]) != levels[leaf] && !leaves_[leaf].empty()) { changing_.insert(leaf); }
+        if (std::exchange(wanted_[leaf], levels[leaf]) != levels[leaf] && !leaves_[leaf].empty()) {
+            changing_.insert(leaf);
+        }
         if (levels[leaf] != LevelChoices::kNone) { splats_wanted_ += splatsOf(leaf, levels[leaf]); }
     }
 }
@@ -26,7 +31,8 @@ bool ShownLeaves::add(LoadedPart& part) {
     if (part.pages.pageCount() > resident_.freePages()) { reserve(); }
     if (part.pages.pageCount() > resident_.freePages() && wanted_[leaf] == level && shown.size() == 1) {
         // As a last resort, when nothing else can go, not even the part being replaced can stay until then.
-        const std::uint64_t own_pages = (splatsOf(leaf, shown.front().level) + gpu::kPageSplats - 1) / gpu::kPageSplats;
+        const std::uint64_t own_pages =
+            (splatsOf(leaf, shown.front().level) + gpu::kPageSplats - 1) / gpu::kPageSplats;
         if (part.pages.pageCount() <= resident_.freePages() + own_pages) { remove(leaf, shown.begin()); }
     }
     const float fade = shown.empty() ? 1.0f : 0.0f;
@@ -103,7 +109,9 @@ void ShownLeaves::reserve() {
     }
 }
 
-bool ShownLeaves::has(LeafLevel at) const { return std::ranges::find(leaves_[at.leaf], at.level, &Shown::level) != leaves_[at.leaf].end(); }
+bool ShownLeaves::has(LeafLevel at) const {
+    return std::ranges::find(leaves_[at.leaf], at.level, &Shown::level) != leaves_[at.leaf].end();
+}
 
 bool ShownLeaves::isTooFine(std::uint32_t leaf) const {
     if (wanted_[leaf] == LevelChoices::kNone) { return false; }
@@ -121,7 +129,9 @@ std::vector<std::uint64_t> ShownLeaves::loadedLevels() const {
 std::uint64_t ShownLeaves::splatsThere() const {
     std::uint64_t sum = 0;
     for (std::uint32_t leaf = 0; leaf < tree_.size(); ++leaf) {
-        if (wanted_[leaf] != LevelChoices::kNone && has({leaf, wanted_[leaf]})) { sum += splatsOf(leaf, wanted_[leaf]); }
+        if (wanted_[leaf] != LevelChoices::kNone && has({leaf, wanted_[leaf]})) {
+            sum += splatsOf(leaf, wanted_[leaf]);
+        }
     }
     return sum;
 }

@@ -17,7 +17,8 @@ namespace binosplat {
 class ShownLeaves {
 public:
     // `leaves` outlives this.
-    ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options, std::span<const LodLeaf> leaves);
+    ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options,
+                std::span<const LodLeaf> leaves);
 
     [[nodiscard]] const ResidentScene& resident() const { return resident_; }
     // Copies everything that was added to the device, and waits for that. Frames do not learn where it was.
@@ -53,7 +54,9 @@ private:
         ResidentScene::Part part;
         float fade;
     };
-    [[nodiscard]] std::uint64_t splatsOf(std::uint32_t leaf, std::uint32_t level) const { return tree_[leaf].levels[level].splats.count; }
+    [[nodiscard]] std::uint64_t splatsOf(std::uint32_t leaf, std::uint32_t level) const {
+        return tree_[leaf].levels[level].splats.count;
+    }
     // The part that a leaf ends with as things are; end() if there will be none.
     [[nodiscard]] std::vector<Shown>::iterator goalOf(std::uint32_t leaf);
     void remove(std::uint32_t leaf, std::vector<Shown>::iterator shown);

@@ -21,8 +21,8 @@ void markRun(const RayPlane& plane, int y, Span run, std::vector<std::uint8_t>& 
 
 // Appends the pairs of one splat, tiles ascending. `marks` has a zero for each column of tiles, and is left
 // that way.
-void binOne(const ProjectedSplat& splat, std::uint32_t rank, glm::uvec2 size_px, double near, std::vector<std::uint8_t>& marks,
-            std::vector<TilePair>& pairs) {
+void binOne(const ProjectedSplat& splat, std::uint32_t rank, glm::uvec2 size_px, double near,
+            std::vector<std::uint8_t>& marks, std::vector<TilePair>& pairs) {
     const glm::ivec4 box = splat.box_px;
     if (box.x >= box.z || box.y >= box.w) { return; }
     const RayPlane plane = rayPlane(splat, size_px, near);
@@ -34,7 +34,9 @@ void binOne(const ProjectedSplat& splat, std::uint32_t rank, glm::uvec2 size_px,
         }
         for (int tile_x = box.x / kTileSize; tile_x * kTileSize < box.z; ++tile_x) {
             if (std::exchange(marks[tile_x], std::uint8_t{0}) != 0) {
-                pairs.push_back({static_cast<std::uint32_t>(tile_y) * columns + static_cast<std::uint32_t>(tile_x), rank});
+                pairs.push_back(
+                    {static_cast<std::uint32_t>(tile_y) * columns + static_cast<std::uint32_t>(tile_x),
+                     rank});
             }
         }
     }
@@ -42,12 +44,14 @@ void binOne(const ProjectedSplat& splat, std::uint32_t rank, glm::uvec2 size_px,
 
 }  // namespace
 
-std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings) {
+std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px,
+                          const Settings& settings) {
     std::vector<std::vector<TilePair>> parts((splats.size() + kBlock - 1) / kBlock);
     forBlocks(splats.size(), kBlock, settings.threads, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint8_t> marks(tileGrid(size_px).x, 0);
         for (std::size_t i = begin; i < end; ++i) {
-            binOne(splats[i], static_cast<std::uint32_t>(i), size_px, settings.near, marks, parts[begin / kBlock]);
+            binOne(splats[i], static_cast<std::uint32_t>(i), size_px, settings.near, marks,
+                   parts[begin / kBlock]);
         }
     });
     std::size_t count = 0;

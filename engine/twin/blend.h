@@ -62,7 +62,8 @@ inline Picture makePicture(glm::uvec2 size_px, const Settings& settings) {
 struct Tile {
     Tile(std::size_t index, glm::uvec2 size_px) {
         const int columns = static_cast<int>(tileGrid(size_px).x);
-        begin_px = kTileSize * glm::ivec2(static_cast<int>(index) % columns, static_cast<int>(index) / columns);
+        begin_px =
+            kTileSize * glm::ivec2(static_cast<int>(index) % columns, static_cast<int>(index) / columns);
         end_px = glm::min(begin_px + kTileSize, glm::ivec2(size_px));
     }
 
@@ -75,7 +76,8 @@ struct Tile {
         for (int y = begin_px.y; y < end_px.y; ++y) {
             for (int x = begin_px.x; x < end_px.x; ++x) {
                 const PixelState& pixel = at(x, y);
-                const std::size_t place = static_cast<std::size_t>(y) * picture.size_px.x + static_cast<std::size_t>(x);
+                const std::size_t place =
+                    static_cast<std::size_t>(y) * picture.size_px.x + static_cast<std::size_t>(x);
                 picture.rgba[place] = shownOf(pixel, settings);
                 picture.depth[place] = pixel.depth;
                 if (settings.inverse_depth_moments) {

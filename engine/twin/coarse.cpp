@@ -41,8 +41,8 @@ std::size_t sampleIndex(int x, int y) { return static_cast<std::size_t>(y * kTil
 // What the samples of a tile see.
 using Samples = std::array<PixelState, static_cast<std::size_t>(kTileSamples) * kTileSamples>;
 
-Samples blendSamples(const Tile& tile, std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, glm::uvec2 size_px,
-                     const Settings& settings) {
+Samples blendSamples(const Tile& tile, std::span<const ProjectedSplat> splats,
+                     std::span<const TilePair> pairs, glm::uvec2 size_px, const Settings& settings) {
     const double apart = static_cast<double>(kTileSize - 1) / (kTileSamples - 1);
     Samples samples;
     for (const TilePair& pair : pairs) {
@@ -53,18 +53,21 @@ Samples blendSamples(const Tile& tile, std::span<const ProjectedSplat> splats, s
                 PixelState& sample = samples[sampleIndex(x, y)];
                 Hit hit;
                 const glm::dvec2 place_px = glm::dvec2(tile.begin_px) + 0.5 + apart * glm::dvec2(x, y);
-                if (sample.open && meet(plane, place_px, hit)) { blend(sample, splat, hit, settings.inverse_depth_moments); }
+                if (sample.open && meet(plane, place_px, hit)) {
+                    blend(sample, splat, hit, settings.inverse_depth_moments);
+                }
             }
         }
     }
     return samples;
 }
 
-void fillTile(const Tile& tile, const Samples& samples, std::span<const glm::dvec4> colours, Picture& picture) {
+void fillTile(const Tile& tile, const Samples& samples, std::span<const glm::dvec4> colours,
+              Picture& picture) {
     for (int y = 0; y < kTileSize; ++y) {
         for (int x = 0; x < kTileSize; ++x) {
-            const std::size_t i =
-                static_cast<std::size_t>(tile.begin_px.y + y) * picture.size_px.x + static_cast<std::size_t>(tile.begin_px.x + x);
+            const std::size_t i = static_cast<std::size_t>(tile.begin_px.y + y) * picture.size_px.x +
+                                  static_cast<std::size_t>(tile.begin_px.x + x);
             const PixelState& nearest = samples[sampleIndex(x / 2, y / 2)];
             glm::dvec4& pixel = picture.rgba[i];
             pixel = glm::max(fillAt(colours, {x, y}), glm::dvec4(0.0));
@@ -108,37 +111,51 @@ std::vector<std::uint8_t> findBeyond(const Eye& eye, const Gaze& gaze) {
 }
 
 glm::dvec4 fillAt(std::span<const glm::dvec4> samples, glm::ivec2 pixel) {
-    const glm::dvec2 place = glm::dvec2(pixel) * static_cast<double>(kTileSamples - 1) / static_cast<double>(kTileSize - 1);
-    return alongAxis(place.y, [&](int y) { return alongAxis(place.x, [&](int x) { return samples[sampleIndex(x, y)]; }); });
+    const glm::dvec2 place =
+        glm::dvec2(pixel) * static_cast<double>(kTileSamples - 1) / static_cast<double>(kTileSize - 1);
+    return alongAxis(place.y, [&](int y) {
+        return alongAxis(place.x, [&](int x) { return samples[sampleIndex(x, y)]; });
+    });
 }
 
 double expectLoss(std::span<const glm::dvec4> samples) {
     constexpr double kLoss = 0.3, kMost = 4.0, kBorders = 8.0 / 6.0;
     const auto second = [&](int x, int y, int step_x, int step_y) {
-        if (std::min(x - step_x, y - step_y) < 0 || std::max(x + step_x, y + step_y) >= kTileSamples) { return 0.0; }
-        const glm::dvec3 difference(samples[sampleIndex(x - step_x, y - step_y)] - 2.0 * samples[sampleIndex(x, y)] +
+        if (std::min(x - step_x, y - step_y) < 0 || std::max(x + step_x, y + step_y) >= kTileSamples) {
+            return 0.0;
+        }
+        const glm::dvec3 difference(samples[sampleIndex(x - step_x, y - step_y)] -
+                                    2.0 * samples[sampleIndex(x, y)] +
                                     samples[sampleIndex(x + step_x, y + step_y)]);
         return glm::dot(difference, difference);
     };
     double loss = 0.0;
     for (int y = 0; y < kTileSamples; ++y) {
-        for (int x = 0; x < kTileSamples; ++x) { loss += std::min(kBorders * (second(x, y, 1, 0) + second(x, y, 0, 1)), kMost); }
+        for (int x = 0; x < kTileSamples; ++x) {
+            loss += std::min(kBorders * (second(x, y, 1, 0) + second(x, y, 0, 1)), kMost);
+        }
     }
     return kLoss * loss;
 }
 
-CoarsePicture rasterizeCoarse(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges,
-                              const Eye& eye, const Gaze& gaze, const Settings& settings) {
+CoarsePicture rasterizeCoarse(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs,
+                              std::span<const TileRange> ranges, const Eye& eye, const Gaze& gaze,
+                              const Settings& settings) {
     constexpr double kLeastSeen = 0.01 * 0.01 * kTileSize * kTileSize;
     const std::vector<double> shares = findSharesThere(eye, gaze);
     const std::vector<std::uint8_t> beyond = findBeyond(eye, gaze);
-    CoarsePicture made{rasterize(splats, pairs, ranges, eye, settings), std::vector<std::uint8_t>(ranges.size(), 0),
+    CoarsePicture made{rasterize(splats, pairs, ranges, eye, settings),
+                       std::vector<std::uint8_t>(ranges.size(), 0),
                        std::vector<std::uint8_t>(ranges.size(), 0), std::vector<double>(ranges.size(), 0.0)};
     forBlocks(ranges.size(), 1, settings.threads, [&](std::size_t t, std::size_t) {
         const Tile tile(t, eye.size_px);
         const TileRange range = ranges[t];
-        if (beyond[t] == 0 || range.begin == range.end || tile.end_px - tile.begin_px != glm::ivec2(kTileSize)) { return; }
-        const Samples samples = blendSamples(tile, splats, pairs.subspan(range.begin, range.end - range.begin), eye.size_px, settings);
+        if (beyond[t] == 0 || range.begin == range.end ||
+            tile.end_px - tile.begin_px != glm::ivec2(kTileSize)) {
+            return;
+        }
+        const Samples samples = blendSamples(
+            tile, splats, pairs.subspan(range.begin, range.end - range.begin), eye.size_px, settings);
         std::vector<glm::dvec4> colours;
         for (const PixelState& sample : samples) { colours.push_back(shownOf(sample, settings)); }
         made.tried[t] = 1;
@@ -155,7 +172,8 @@ CoarsePicture renderCoarse(const Scene& scene, const Eye& eye, const Gaze& gaze,
     Settings settings = asked;
     settings.is_light = scene.is_linear;
     const auto visible = cull(scene, {&eye, 1}, settings);
-    const auto splats = project(scene, sortDepth(compact(scene, visible, eye, settings), settings), eye, settings);
+    const auto splats =
+        project(scene, sortDepth(compact(scene, visible, eye, settings), settings), eye, settings);
     auto pairs = bin(splats, eye.size_px, settings);
     hidePairs(pairs, hidden);
     sortTiles(pairs, settings);

@@ -33,8 +33,9 @@ struct CoarsePicture {
     std::vector<std::uint8_t> coarse, tried;
     std::vector<double> losses;  // of the candidates
 };
-CoarsePicture rasterizeCoarse(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges,
-                              const Eye& eye, const Gaze& gaze, const Settings& settings);
+CoarsePicture rasterizeCoarse(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs,
+                              std::span<const TileRange> ranges, const Eye& eye, const Gaze& gaze,
+                              const Settings& settings);
 CoarsePicture renderCoarse(const Scene& scene, const Eye& eye, const Gaze& gaze, const Settings& settings,
                            std::span<const std::uint8_t> hidden = {});
 

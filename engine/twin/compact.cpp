@@ -4,7 +4,8 @@
 
 namespace binosplat::reference {
 
-Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye, const Settings& settings) {
+Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye,
+                const Settings& settings) {
     Visible result;
     for (std::size_t i = 0; i < visible.size(); ++i) {
         if (visible[i] != 0) { result.splats.push_back(static_cast<std::uint32_t>(i)); }

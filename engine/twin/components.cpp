@@ -13,7 +13,8 @@ struct Box {
 };
 
 void markBox(const Box& box, std::vector<TileKind>& kinds, const glm::ivec2& size, int margin_px) {
-    const glm::ivec2 low = glm::max(box.low - margin_px, glm::ivec2(0)), high = glm::min(box.high + margin_px, size);
+    const glm::ivec2 low = glm::max(box.low - margin_px, glm::ivec2(0)),
+                     high = glm::min(box.high + margin_px, size);
     const int columns = (size.x + kTileSize - 1) / kTileSize;
     for (int y = low.y / kTileSize; y * kTileSize < high.y; ++y) {
         for (int x = low.x / kTileSize; x * kTileSize < high.x; ++x) {
@@ -35,7 +36,10 @@ Box floodFill(std::vector<std::uint8_t>& open, const glm::ivec2& size, const glm
         box = {glm::min(box.low, at), glm::max(box.high, at + 1)};
         for (int n = 0; n < 9; ++n) {
             const glm::ivec2 next = at + glm::ivec2(n % 3 - 1, n / 3 - 1);
-            if (next.x < 0 || next.y < 0 || next.x >= size.x || next.y >= size.y || open[indexOf(next)] == 0) { continue; }
+            if (next.x < 0 || next.y < 0 || next.x >= size.x || next.y >= size.y ||
+                open[indexOf(next)] == 0) {
+                continue;
+            }
             open[indexOf(next)] = 0;
             rest.push_back(next);
         }
@@ -45,8 +49,8 @@ Box floodFill(std::vector<std::uint8_t>& open, const glm::ivec2& size, const glm
 
 }  // namespace
 
-std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds, glm::uvec2 size_px, int margin_px,
-                           std::size_t most_boxes) {
+std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds,
+                           glm::uvec2 size_px, int margin_px, std::size_t most_boxes) {
     const glm::ivec2 size(size_px);
     const int columns = (size.x + kTileSize - 1) / kTileSize;
     std::vector<std::uint8_t> open(resolved.size(), 0);
@@ -63,9 +67,13 @@ std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileK
         }
     }
     for (const Box& pixel : pixels) {
-        if (open[static_cast<std::size_t>(pixel.low.y * size.x + pixel.low.x)] != 0) { boxes.push_back(floodFill(open, size, pixel.low)); }
+        if (open[static_cast<std::size_t>(pixel.low.y * size.x + pixel.low.x)] != 0) {
+            boxes.push_back(floodFill(open, size, pixel.low));
+        }
     }
-    for (const Box& box : boxes.size() <= most_boxes ? boxes : pixels) { markBox(box, kinds, size, margin_px); }
+    for (const Box& box : boxes.size() <= most_boxes ? boxes : pixels) {
+        markBox(box, kinds, size, margin_px);
+    }
     return boxes.size();
 }
 

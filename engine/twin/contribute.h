@@ -19,7 +19,8 @@ struct Contribution {
 // One for each of `splats`, from the input of rasterize(), the picture that it makes of them, and a wanted
 // colour for each pixel.
 std::vector<Contribution> contribute(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs,
-                                     std::span<const TileRange> ranges, const Eye& eye, const Settings& settings, const Picture& shown,
+                                     std::span<const TileRange> ranges, const Eye& eye,
+                                     const Settings& settings, const Picture& shown,
                                      std::span<const glm::dvec3> wanted);
 
 }  // namespace binosplat::reference

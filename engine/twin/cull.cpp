@@ -14,8 +14,8 @@ struct Frustum {
         const Intrinsics& k = eye.intrinsics;
         first = glm::dvec2(0.5) - kSlackPx;
         last = glm::dvec2(eye.size_px) - 0.5 + kSlackPx;
-        sides = {glm::dvec3(k.fx, 0.0, k.cx - first.x), glm::dvec3(-k.fx, 0.0, last.x - k.cx), glm::dvec3(0.0, k.fy, k.cy - first.y),
-                 glm::dvec3(0.0, -k.fy, last.y - k.cy)};
+        sides = {glm::dvec3(k.fx, 0.0, k.cx - first.x), glm::dvec3(-k.fx, 0.0, last.x - k.cx),
+                 glm::dvec3(0.0, k.fy, k.cy - first.y), glm::dvec3(0.0, -k.fy, last.y - k.cy)};
     }
 
     // Written so that NaN fails.
@@ -23,10 +23,11 @@ struct Frustum {
         if (gaussian) { return splat.c.z > near && gaussianTouches(splat); }
         const double reach = std::sqrt(splat.cut);
         const auto support = [&](const glm::dvec3& normal) {
-            return glm::dot(normal, splat.c) + reach * std::hypot(glm::dot(normal, splat.a), glm::dot(normal, splat.b));
+            return glm::dot(normal, splat.c) +
+                   reach * std::hypot(glm::dot(normal, splat.a), glm::dot(normal, splat.b));
         };
-        if (support({0.0, 0.0, 1.0}) >= near && support(sides[0]) >= 0.0 && support(sides[1]) >= 0.0 && support(sides[2]) >= 0.0 &&
-            support(sides[3]) >= 0.0) {
+        if (support({0.0, 0.0, 1.0}) >= near && support(sides[0]) >= 0.0 && support(sides[1]) >= 0.0 &&
+            support(sides[2]) >= 0.0 && support(sides[3]) >= 0.0) {
             return true;
         }
         return splat.c.z > near && lowPassTouches(splat);
@@ -39,12 +40,14 @@ private:
 
     [[nodiscard]] bool lowPassTouches(const CameraSplat& splat) const {
         const glm::dvec2 beyond = beyondPicture(splat);
-        return kLowPassFactor * glm::dot(beyond, beyond) <= splat.cut * frame.own_pixel_px * frame.own_pixel_px;
+        return kLowPassFactor * glm::dot(beyond, beyond) <=
+               splat.cut * frame.own_pixel_px * frame.own_pixel_px;
     }
 
     [[nodiscard]] bool gaussianTouches(const CameraSplat& splat) const {
         const ScreenGaussian g = screenGaussian(splat, frame);
-        const glm::dvec2 beyond = glm::abs(beyondPicture(splat)), reach = glm::sqrt(splat.cut * glm::dvec2(g.xx, g.yy));
+        const glm::dvec2 beyond = glm::abs(beyondPicture(splat)),
+                         reach = glm::sqrt(splat.cut * glm::dvec2(g.xx, g.yy));
         return beyond.x <= reach.x && beyond.y <= reach.y;
     }
 

@@ -14,7 +14,8 @@ std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choi
         const auto pixel = movingPixel(dominant, i, {.choice = TileChoice::kPaper, .depth_choice = choice});
         if (!pixel) { continue; }
         const double octave = -std::log2(pixel->inverse_depth);
-        ++bins[static_cast<std::size_t>(std::clamp(std::floor(kBinsPerOctave * octave + kBins / 2.0), 0.0, kBins - 1.0))];
+        ++bins[static_cast<std::size_t>(
+            std::clamp(std::floor(kBinsPerOctave * octave + kBins / 2.0), 0.0, kBins - 1.0))];
     }
     return bins;
 }

@@ -14,8 +14,8 @@ struct Landed {
     glm::dvec2 greatest{-std::numeric_limits<double>::infinity()};
 };
 
-Landed sampleEdge(const EyeChange& change, const glm::dvec2& first_px, const glm::dvec2& step_px, const InverseDepthBounds& bounds,
-                  int samples) {
+Landed sampleEdge(const EyeChange& change, const glm::dvec2& first_px, const glm::dvec2& step_px,
+                  const InverseDepthBounds& bounds, int samples) {
     Landed landed;
     for (int i = 0; i < samples; ++i) {
         for (const double inverse_depth : {bounds.far, bounds.near}) {
@@ -33,10 +33,13 @@ Landed sampleEdge(const EyeChange& change, const glm::dvec2& first_px, const glm
 
 // The paper's left_w and top_h; highBorder: right_w and bottom_h.
 int lowBorder(double least, int margin, int size) {
-    return least > 0.0 ? static_cast<int>(std::clamp(std::ceil(least) + margin, 0.0, static_cast<double>(size / 2))) : 0;
+    return least > 0.0
+               ? static_cast<int>(std::clamp(std::ceil(least) + margin, 0.0, static_cast<double>(size / 2)))
+               : 0;
 }
 int highBorder(double greatest, int margin, int size) {
-    return greatest < size - 1 ? static_cast<int>(std::clamp(size - 1 - std::floor(greatest) + margin, 0.0, static_cast<double>(size / 2)))
+    return greatest < size - 1 ? static_cast<int>(std::clamp(size - 1 - std::floor(greatest) + margin, 0.0,
+                                                             static_cast<double>(size / 2)))
                                : 0;
 }
 
@@ -47,7 +50,9 @@ InverseDepthBounds findInverseDepthBounds(std::span<const std::uint32_t> bins) {
     for (const std::uint32_t count : bins) { total += count; }
     if (total == 0) { return {0.0, 0.0}; }
     const std::uint64_t outliers = total / 200;
-    const auto inverseDepthAt = [](std::size_t edge) { return std::exp2(16.0 - static_cast<double>(edge) / 32.0); };
+    const auto inverseDepthAt = [](std::size_t edge) {
+        return std::exp2(16.0 - static_cast<double>(edge) / 32.0);
+    };
     // The near edge of the bin with the first pixel after the outliers, and the far edge of the bin with the
     // last one before them.
     const auto binOf = [&](std::uint64_t rank) {
@@ -70,14 +75,15 @@ Borders findBorders(const InverseDepthBounds& bounds, const EyePair& eyes, const
     // The paper takes the extremes of all samples: as far as the farthest content needs. Tight ones use each
     // edge's own samples, inwards.
     glm::dvec2 least = glm::min(glm::min(left.least, top.least), glm::min(right.least, bottom.least));
-    glm::dvec2 greatest = glm::max(glm::max(left.greatest, top.greatest), glm::max(right.greatest, bottom.greatest));
+    glm::dvec2 greatest =
+        glm::max(glm::max(left.greatest, top.greatest), glm::max(right.greatest, bottom.greatest));
     if (settings.tight_edges) {
         least = {left.greatest.x, top.greatest.y};
         greatest = {right.least.x, bottom.least.y};
     }
     const int margin = settings.margin_px;
-    return {lowBorder(least.x, margin, size.x), lowBorder(least.y, margin, size.y), highBorder(greatest.x, margin, size.x),
-            highBorder(greatest.y, margin, size.y)};
+    return {lowBorder(least.x, margin, size.x), lowBorder(least.y, margin, size.y),
+            highBorder(greatest.x, margin, size.x), highBorder(greatest.y, margin, size.y)};
 }
 
 std::vector<TileKind> markEdges(const Borders& borders, glm::uvec2 size_px) {
@@ -85,10 +91,12 @@ std::vector<TileKind> markEdges(const Borders& borders, glm::uvec2 size_px) {
     std::vector<TileKind> kinds(std::size_t{tiles.x} * tiles.y, TileKind::kNone);
     for (int y = 0; y < static_cast<int>(size_px.y); ++y) {
         for (int x = 0; x < static_cast<int>(size_px.x); ++x) {
-            const bool inside = x >= borders.left && y >= borders.top && x < static_cast<int>(size_px.x) - borders.right &&
+            const bool inside = x >= borders.left && y >= borders.top &&
+                                x < static_cast<int>(size_px.x) - borders.right &&
                                 y < static_cast<int>(size_px.y) - borders.bottom;
             if (!inside) {
-                kinds[static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize)] = TileKind::kEdge;
+                kinds[static_cast<std::size_t>(y / kTileSize) * tiles.x +
+                      static_cast<std::size_t>(x / kTileSize)] = TileKind::kEdge;
             }
         }
     }

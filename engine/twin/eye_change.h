@@ -12,7 +12,8 @@ public:
     EyeChange(const Eye& target, const Eye& source)
         : target_(target.intrinsics),
           source_(source.intrinsics),
-          turn_(glm::mat3_cast(glm::conjugate(target.world_from_camera.orientation) * source.world_from_camera.orientation)),
+          turn_(glm::mat3_cast(glm::conjugate(target.world_from_camera.orientation) *
+                               source.world_from_camera.orientation)),
           move_(glm::conjugate(target.world_from_camera.orientation) *
                 (source.world_from_camera.position - target.world_from_camera.position)),
           away_(glm::length(source.world_from_camera.position)) {}
@@ -24,7 +25,8 @@ public:
     };
     // A point that is infinitely far (inverse depth 0) has only a direction.
     [[nodiscard]] Moved move(const glm::dvec2& place_px, double inverse_depth) const {
-        const glm::dvec3 direction((place_px.x - source_.cx) / source_.fx, (place_px.y - source_.cy) / source_.fy, 1.0);
+        const glm::dvec3 direction((place_px.x - source_.cx) / source_.fx,
+                                   (place_px.y - source_.cy) / source_.fy, 1.0);
         const glm::dvec3 point = turn_ * direction + inverse_depth * move_;
         return {{target_.fx * point.x / point.z + target_.cx, target_.fy * point.y / point.z + target_.cy},
                 inverse_depth / point.z,
@@ -33,14 +35,17 @@ public:
     // How far a place moves in the target per unit of the source's inverse depth, if both depths are about
     // the same.
     [[nodiscard]] glm::dvec2 disparity(const glm::dvec2& place_px) const {
-        return {target_.fx * move_.x + (target_.cx - place_px.x) * move_.z, target_.fy * move_.y + (target_.cy - place_px.y) * move_.z};
+        return {target_.fx * move_.x + (target_.cx - place_px.x) * move_.z,
+                target_.fy * move_.y + (target_.cy - place_px.y) * move_.z};
     }
     // True if every point keeps its row and its depth, except for the rounding of poses, which is greater far
     // from the origin.
     [[nodiscard]] bool keepsRows() const {
         const double rounding = 1e-12 * away_ + 1e-9 * std::abs(move_.x);
-        return glm::length(turn_[0] - glm::dvec3(1, 0, 0)) + glm::length(turn_[1] - glm::dvec3(0, 1, 0)) < 1e-9 &&
-               std::abs(move_.y) <= rounding && std::abs(move_.z) <= rounding && target_.fy == source_.fy && target_.cy == source_.cy;
+        return glm::length(turn_[0] - glm::dvec3(1, 0, 0)) + glm::length(turn_[1] - glm::dvec3(0, 1, 0)) <
+                   1e-9 &&
+               std::abs(move_.y) <= rounding && std::abs(move_.z) <= rounding && target_.fy == source_.fy &&
+               target_.cy == source_.cy;
     }
 
 private:

@@ -18,11 +18,13 @@ inline constexpr double kMaxHalf = 65504.0;
 inline glm::dvec3 evaluateHarmonics(const float* sh, int degree, const glm::dvec3& d) {
     const std::array<double, 16> basis = shBasis(d);
     const auto limit = [](float value) {
-        return std::isfinite(value) ? std::clamp(static_cast<double>(value), -kMaxHalf, kMaxHalf) : static_cast<double>(value);
+        return std::isfinite(value) ? std::clamp(static_cast<double>(value), -kMaxHalf, kMaxHalf)
+                                    : static_cast<double>(value);
     };
     glm::dvec3 sum(0.0);
     for (int k = 0; k < (degree + 1) * (degree + 1); ++k) {
-        sum += basis[static_cast<std::size_t>(k)] * glm::dvec3(limit(sh[3 * k]), limit(sh[3 * k + 1]), limit(sh[3 * k + 2]));
+        sum += basis[static_cast<std::size_t>(k)] *
+               glm::dvec3(limit(sh[3 * k]), limit(sh[3 * k + 1]), limit(sh[3 * k + 2]));
     }
     return sum;
 }

@@ -109,7 +109,8 @@ struct PricedTiles {
 void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost);
 // price, under a bound of errors: the budget is the cost of tiles above the bound and a twentieth of all
 // work, at most `budget_cost` except for tiles of kNewPrice.
-std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost, std::uint64_t picture_cost);
+std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost,
+                               std::uint64_t picture_cost);
 
 // rasterize and tile_ranges: puts the tiles of `full` that are rendered over the reprojected ones. Their
 // error becomes known, and is measured per frame since they were last rendered, except for tiles without
@@ -118,10 +119,12 @@ std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint6
 struct SquaresOfTiles {
     double expected = 0.0, found = 0.0;
 };
-SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
+SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const std::uint64_t> costs,
+                           std::span<const TileKind> kinds);
 // Also rasterize: what the tile's pixels would lose if they were twice as wide, as in the picture `wider`,
 // times the frames since it was rendered, at most 32.
-double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px);
+double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index,
+                    glm::uvec2 size_px);
 // A disc as these see it, in whichever tile it is.
 ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px);
 // select: the squared errors expected of tiles that are not rendered.

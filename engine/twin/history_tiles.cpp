@@ -21,7 +21,9 @@ std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
 void growErrors(std::span<HistoryTile> tiles) {
     for (HistoryTile& tile : tiles) {
         for (std::size_t q = 0; q < 4; ++q) {
-            const double expected = tile.unseen[q] >= kNewPixels ? kNewError : std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
+            const double expected = tile.unseen[q] >= kNewPixels
+                                        ? kNewError
+                                        : std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
             const double measured = tile.growth[q] > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
             tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth[q];
         }
@@ -52,7 +54,9 @@ void markChanged(std::span<HistoryTile> tiles, glm::uvec2 size_px, std::span<con
     }
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         for (std::size_t q = 0; q < 4; ++q) {
-            if (more[t][q] > 0.0) { tiles[t].errors[q] = std::min(tiles[t].errors[q] + more[t][q], kMostChangedError); }
+            if (more[t][q] > 0.0) {
+                tiles[t].errors[q] = std::min(tiles[t].errors[q] + more[t][q], kMostChangedError);
+            }
         }
     }
 }
@@ -92,18 +96,23 @@ ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px) {
     return wider;
 }
 
-double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px) {
+double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index,
+                    glm::uvec2 size_px) {
     const std::size_t columns = tileGrid(size_px).x;
     double squares = 0.0;
-    for (std::size_t y = index / columns * kTileSize; y < std::min<std::size_t>((index / columns + 1) * kTileSize, size_px.y); ++y) {
-        for (std::size_t x = index % columns * kTileSize; x < std::min<std::size_t>((index % columns + 1) * kTileSize, size_px.x); ++x) {
-            squares += squareOf(glm::length(glm::dvec3(full.rgba[y * size_px.x + x] - wider.rgba[y * size_px.x + x])));
+    for (std::size_t y = index / columns * kTileSize;
+         y < std::min<std::size_t>((index / columns + 1) * kTileSize, size_px.y); ++y) {
+        for (std::size_t x = index % columns * kTileSize;
+             x < std::min<std::size_t>((index % columns + 1) * kTileSize, size_px.x); ++x) {
+            squares += squareOf(
+                glm::length(glm::dvec3(full.rgba[y * size_px.x + x] - wider.rgba[y * size_px.x + x])));
         }
     }
     return squares * std::clamp(tile.age, 1u, 32u);
 }
 
-SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
+SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const std::uint64_t> costs,
+                           std::span<const TileKind> kinds) {
     const std::size_t width = warped.eye.size_px.x, columns = tileGrid(warped.eye.size_px).x;
     std::vector<std::array<double, 4>> squares(kinds.size(), std::array<double, 4>{});
     for (std::size_t i = 0; i < warped.rgba.size(); ++i) {
@@ -124,7 +133,9 @@ SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const
         if (costs[t] == 0 || age == 0) { continue; }
         SquaresOfTiles its;
         for (std::size_t q = 0; q < 4; ++q) {
-            if (unseen[q] >= kNewPixels || std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) { continue; }
+            if (unseen[q] >= kNewPixels || std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) {
+                continue;
+            }
             warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age;
             its.expected += kChannels * kCellPixels * errors[q] * errors[q];
             its.found += squares[t][q];

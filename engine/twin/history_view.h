@@ -35,20 +35,24 @@ public:
           history_(history) {}
 
     [[nodiscard]] bool isInside(const glm::dvec2& place_px) const {
-        return glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) && glm::all(glm::lessThan(place_px, glm::dvec2(last) + 1.0));
+        return glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) &&
+               glm::all(glm::lessThan(place_px, glm::dvec2(last) + 1.0));
     }
     // Where a pixel is in the history. A place that is off a pixel by rounding alone counts as that pixel: a
     // head that stands still sees what it saw.
     [[nodiscard]] EyeChange::Moved place(const glm::dvec2& pixel_px, double inverse_depth) const {
         EyeChange::Moved moved = history_from_now.move(pixel_px, inverse_depth);
         for (int axis = 0; axis < 2; ++axis) {
-            if (std::abs(moved.place_px[axis] - pixel_px[axis]) < 1e-9) { moved.place_px[axis] = pixel_px[axis]; }
+            if (std::abs(moved.place_px[axis] - pixel_px[axis]) < 1e-9) {
+                moved.place_px[axis] = pixel_px[axis];
+            }
         }
         return moved;
     }
     [[nodiscard]] std::size_t indexOf(const glm::ivec2& pixel) const {
         const glm::ivec2 held = glm::clamp(pixel, glm::ivec2(0), last);
-        return static_cast<std::size_t>(held.y) * static_cast<std::size_t>(last.x + 1) + static_cast<std::size_t>(held.x);
+        return static_cast<std::size_t>(held.y) * static_cast<std::size_t>(last.x + 1) +
+               static_cast<std::size_t>(held.x);
     }
     [[nodiscard]] const glm::dvec4& colour(int x, int y) const { return history_.rgba[indexOf({x, y})]; }
     [[nodiscard]] bool isHidden(const glm::ivec2& at) const {
@@ -70,7 +74,9 @@ public:
         return false;
     }
     // Whether it was hidden.
-    [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const { return history_.pixels[indexOf(at)]; }
+    [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const {
+        return history_.pixels[indexOf(at)];
+    }
 
     // What the history shows at a place.
     struct Seen {
@@ -81,7 +87,8 @@ public:
     [[nodiscard]] Seen look(const glm::dvec2& place_px) const {
         const glm::ivec2 at(glm::floor(glm::clamp(place_px, glm::dvec2(0.0), glm::dvec2(last))));
         const std::optional<MovingPixel> found = pixel(at);
-        const EyeChange::Moved moved = now_from_history.move(glm::dvec2(at) + 0.5, found ? found->inverse_depth : 0.0);
+        const EyeChange::Moved moved =
+            now_from_history.move(glm::dvec2(at) + 0.5, found ? found->inverse_depth : 0.0);
         if (!moved.in_front) { return {}; }
         return {found, moved.inverse_depth, moved.place_px};
     }

@@ -39,12 +39,16 @@ std::uint32_t spreadCode(double spread) {
     return static_cast<std::uint32_t>(std::clamp(code, 0.0, kLastCode));
 }
 
-double spreadOf(std::uint32_t code) { return code == 0 ? 0.0 : std::exp2((code - 1.0) / kCodesPerOctave + kLeastSpreadLog2); }
+double spreadOf(std::uint32_t code) {
+    return code == 0 ? 0.0 : std::exp2((code - 1.0) / kCodesPerOctave + kLeastSpreadLog2);
+}
 
-std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel, const StereoSettings& settings) {
+std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel,
+                                       const StereoSettings& settings) {
     const double inverse_depth = chooseInverseDepth(dominant, pixel, settings.depth_choice);
     if (!(inverse_depth >= 0.0 && inverse_depth < kNearest)) { return std::nullopt; }
-    return MovingPixel{inverse_depth, inverse_depth > 0.0 ? spreadCode(deviation(dominant, pixel) / inverse_depth) : 0};
+    return MovingPixel{inverse_depth,
+                       inverse_depth > 0.0 ? spreadCode(deviation(dominant, pixel) / inverse_depth) : 0};
 }
 
 double roundedDepth(double inverse_depth) {

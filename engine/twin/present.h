@@ -27,18 +27,18 @@ void keepBits(std::span<std::uint32_t> words, std::span<const std::uint32_t> bef
 // The same over `behind`, existing words; splats do not show where its content is nearer, by its depths as
 // presentDepths has them, if there are any.
 std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums,
-                                       std::span<const std::uint32_t> behind, std::span<const double> mesh_depths,
-                                       const Presentation& presentation);
+                                       std::span<const std::uint32_t> behind,
+                                       std::span<const double> mesh_depths, const Presentation& presentation);
 // near over the depth, plus the offset: 1 at the near plane and in front of it, 0 where alpha is under a
 // half. The depth is D/A or, where that lies between the ends of slopes that leave the pixel along its row or
 // column, the end at which blending passes a half: a slope has steps of more than 2 % of 1/z, fifteen at
 // most, and ends with the first smaller one; and ends differ by more than 10 %. Rows of `width` pixels.
-std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, std::uint32_t width,
-                                  const Presentation& presentation);
+std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums,
+                                  std::uint32_t width, const Presentation& presentation);
 
 // turn: such words as a view with other axes shows them, each from the four around its place, in linear
 // light. `linear`: bytes are light.
-std::vector<std::uint32_t> turn(std::span<const std::uint32_t> words, glm::uvec2 picture_px, glm::uvec2 view_px,
-                                const glm::dmat3& picture_from_view, bool linear);
+std::vector<std::uint32_t> turn(std::span<const std::uint32_t> words, glm::uvec2 picture_px,
+                                glm::uvec2 view_px, const glm::dmat3& picture_from_view, bool linear);
 
 }  // namespace binosplat::reference

@@ -9,8 +9,10 @@
 
 namespace binosplat::reference {
 
-std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds, std::span<const double> errors,
-                                                std::span<const std::uint64_t> costs, std::span<const double> seen_shares) {
+std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds,
+                                                std::span<const double> errors,
+                                                std::span<const std::uint64_t> costs,
+                                                std::span<const double> seen_shares) {
     // A hundredth of the whole range in each pixel of a tile.
     constexpr double kLeastSeen = 0.01 * 0.01 * kTileSize * kTileSize;
     constexpr double kMostSteps = 0x1p31 - 1.0, kBinsPerOctave = 16.0, kFirstOctave = -23.0, kBins = 1023.0;
@@ -39,8 +41,10 @@ std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze) {
         for (unsigned x = 0; x < tiles.x; ++x) {
             const glm::dvec2 middle_px = (glm::dvec2(x, y) + 0.5) * static_cast<double>(kTileSize);
             const glm::dvec3 ray((middle_px.x - lens.cx) / lens.fx, (middle_px.y - lens.cy) / lens.fy, 1.0);
-            const double angle_deg = glm::degrees(std::acos(std::clamp(glm::dot(glm::normalize(ray), towards), -1.0, 1.0)));
-            const double finest_deg = 1.0 / 48.0 + 0.022 * std::max(angle_deg - glm::degrees(gaze.clear_rad), 0.0);
+            const double angle_deg =
+                glm::degrees(std::acos(std::clamp(glm::dot(glm::normalize(ray), towards), -1.0, 1.0)));
+            const double finest_deg =
+                1.0 / 48.0 + 0.022 * std::max(angle_deg - glm::degrees(gaze.clear_rad), 0.0);
             shares.push_back(std::pow(std::min(2.0 * pixel_deg / finest_deg, 1.0), 2.0));
         }
     }

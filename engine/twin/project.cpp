@@ -28,7 +28,9 @@ void reduce(ProjectedSplat& splat, const CameraSplat& camera, const Intrinsics& 
     const glm::dvec3 per_y = glm::dvec3(dual[0].y, dual[1].y, dual[2].y) / k.fy;
     const double length = std::hypot(per_x.x, per_x.y);
     const double cosine = length > 0.0 ? per_x.x / length : 1.0, sine = length > 0.0 ? per_x.y / length : 0.0;
-    const auto turn = [&](double u, double v) { return glm::dvec2(cosine * u + sine * v, cosine * v - sine * u); };
+    const auto turn = [&](double u, double v) {
+        return glm::dvec2(cosine * u + sine * v, cosine * v - sine * u);
+    };
     const glm::dvec2 turned_y = turn(per_y.x, per_y.y);
     splat.plane_from_pixel = {length, turned_y.x, turned_y.y};
     splat.perspective = {per_x.z, per_y.z};
@@ -55,13 +57,16 @@ bool placeGaussian(ProjectedSplat& splat, const CameraSplat& camera, const EyeFr
     splat.plane_from_pixel = {a, -g.xy / g.yy * a, 1.0 / std::sqrt(g.yy)};
     splat.plane_offset = glm::dvec2(0.0);
     // The mean of 1/z at a place on the screen: Sigma2^-1 times its covariance with the place.
-    splat.perspective = glm::dvec2(g.yy * g.with_depth.x - g.xy * g.with_depth.y, g.xx * g.with_depth.y - g.xy * g.with_depth.x) / g.det;
+    splat.perspective = glm::dvec2(g.yy * g.with_depth.x - g.xy * g.with_depth.y,
+                                   g.xx * g.with_depth.y - g.xy * g.with_depth.x) /
+                        g.det;
     splat.inverse_depth = 1.0 / camera.c.z;
     splat.reach_px = {std::sqrt(splat.cut * g.xx), std::sqrt(splat.cut * g.yy)};
     return true;
 }
 
-ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame& eye, glm::uvec2 size_px, const Settings& settings) {
+ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame& eye, glm::uvec2 size_px,
+                          const Settings& settings) {
     ProjectedSplat splat{};
     const std::optional<CameraSplat> camera = toCamera(scene, index, eye);
     const glm::dvec3 colour = shade(scene, index, eye);
@@ -70,8 +75,10 @@ ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame&
     const Intrinsics& k = eye.intrinsics;
     splat.low_pass = c.z > settings.near;
     splat.low_pass_factor = kLowPassFactor / (eye.own_pixel_px * eye.own_pixel_px);
-    splat.reference_px = splat.low_pass ? glm::dvec2(k.fx * c.x / c.z + k.cx, k.fy * c.y / c.z + k.cy) : 0.5 * eye.size_px;
-    splat.disc = std::abs(glm::dot(glm::cross(a, b), c)) > kMinPlaneSine * glm::length(a) * glm::length(b) * glm::length(c);
+    splat.reference_px =
+        splat.low_pass ? glm::dvec2(k.fx * c.x / c.z + k.cx, k.fy * c.y / c.z + k.cy) : 0.5 * eye.size_px;
+    splat.disc = std::abs(glm::dot(glm::cross(a, b), c)) >
+                 kMinPlaneSine * glm::length(a) * glm::length(b) * glm::length(c);
     splat.depth = c.z;
     splat.cut = camera->cut;
     splat.opacity = static_cast<double>(scene.opacities[index]);
@@ -91,11 +98,14 @@ ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame&
 
 }  // namespace
 
-std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings) {
+std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye,
+                                    const Settings& settings) {
     std::vector<ProjectedSplat> projected(order.size());
     const EyeFrame frame(eye);
     forBlocks(order.size(), 4096, settings.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) { projected[i] = projectOne(scene, order[i], frame, eye.size_px, settings); }
+        for (std::size_t i = begin; i < end; ++i) {
+            projected[i] = projectOne(scene, order[i], frame, eye.size_px, settings);
+        }
     });
     return projected;
 }

@@ -32,22 +32,26 @@ struct Waiting {
 
     void insert(const OwnHit& hit) {
         const auto place =
-            std::lower_bound(hits.begin(), hits.end(), hit, [](const OwnHit& a, const OwnHit& b) { return a.order_depth > b.order_depth; });
+            std::lower_bound(hits.begin(), hits.end(), hit,
+                             [](const OwnHit& a, const OwnHit& b) { return a.order_depth > b.order_depth; });
         hits.insert(place, hit);
     }
 };
 
 class PixelOrder {
 public:
-    PixelOrder(std::span<const ProjectedSplat> splats, const Eye& eye, const Settings& settings, std::size_t window)
+    PixelOrder(std::span<const ProjectedSplat> splats, const Eye& eye, const Settings& settings,
+               std::size_t window)
         : splats_(splats), eye_(eye), settings_(settings), window_(window) {}
 
-    void blendTile(Tile& tile, const Scene& scene, std::span<const std::uint32_t> order, std::span<const TilePair> pairs) const {
+    void blendTile(Tile& tile, const Scene& scene, std::span<const std::uint32_t> order,
+                   std::span<const TilePair> pairs) const {
         std::array<Waiting, kTileSize * kTileSize> waiting;
         const EyeFrame frame(eye_);
         for (const TilePair& pair : pairs) {
             const ProjectedSplat& splat = splats_[pair.splat];
-            const GreatestResponse response = splat.gaussian ? responseOf(*toCamera(scene, order[pair.splat], frame)) : GreatestResponse{};
+            const GreatestResponse response =
+                splat.gaussian ? responseOf(*toCamera(scene, order[pair.splat], frame)) : GreatestResponse{};
             gather(tile, waiting, pair.splat, response);
         }
         for (std::size_t i = 0; i < waiting.size(); ++i) {
@@ -61,19 +65,22 @@ private:
         return {deviations_from_camera, deviations_from_camera * splat.c};
     }
 
-    void gather(Tile& tile, std::span<Waiting> waiting, std::uint32_t rank, const GreatestResponse& response) const {
+    void gather(Tile& tile, std::span<Waiting> waiting, std::uint32_t rank,
+                const GreatestResponse& response) const {
         const ProjectedSplat& splat = splats_[rank];
         const RayPlane plane = rayPlane(splat, eye_.size_px, settings_.near);
         const Intrinsics& k = eye_.intrinsics;
         const glm::ivec4& box = splat.box_px;
         for (int y = std::max(box.y, tile.begin_px.y); y < std::min(box.w, tile.end_px.y); ++y) {
-            for (const Span& run : runsOfReach(plane, y, std::max(box.x, tile.begin_px.x), std::min(box.z, tile.end_px.x))) {
+            for (const Span& run :
+                 runsOfReach(plane, y, std::max(box.x, tile.begin_px.x), std::min(box.z, tile.end_px.x))) {
                 for (int x = run.begin; x < run.end; ++x) {
                     PixelState& pixel = tile.at(x, y);
                     Hit hit;
                     if (!pixel.open || !meet(plane, {x + 0.5, y + 0.5}, hit)) { continue; }
                     if (splat.gaussian) {
-                        const double depth = response.depthAlong({(x + 0.5 - k.cx) / k.fx, (y + 0.5 - k.cy) / k.fy, 1.0});
+                        const double depth =
+                            response.depthAlong({(x + 0.5 - k.cx) / k.fx, (y + 0.5 - k.cy) / k.fy, 1.0});
                         if (std::isfinite(depth)) { hit.depth = depth; }
                     }
                     Waiting& own = waiting[tile.indexOf(x, y)];
@@ -98,8 +105,9 @@ private:
 
 }  // namespace
 
-Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
-                         std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
+Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order,
+                         std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs,
+                         std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
                          std::size_t window) {
     Picture picture = makePicture(eye.size_px, settings);
     const PixelOrder pixels(splats, eye, settings, window);

@@ -26,7 +26,9 @@ struct Interval {
 Span pixelsIn(double low, double high, int first, int last) {
     if (!(low <= high)) { return {first, first}; }
     const double begin = std::ceil(low - 0.5 - kSlackPx), end = std::floor(high - 0.5 + kSlackPx) + 1.0;
-    const auto clip = [&](double x) { return static_cast<int>(std::clamp(x, static_cast<double>(first), static_cast<double>(last))); };
+    const auto clip = [&](double x) {
+        return static_cast<int>(std::clamp(x, static_cast<double>(first), static_cast<double>(last)));
+    };
     return {clip(begin), clip(end)};
 }
 
@@ -153,7 +155,8 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
         const glm::dvec2 variance = splat.reach_px * splat.reach_px / splat.cut;
         // xy = -B/A yy, from the form.
         const double xy = -splat.plane_from_pixel.y / splat.plane_from_pixel.x * variance.y;
-        const double longest = 0.5 * (variance.x + variance.y) + std::hypot(0.5 * (variance.x - variance.y), xy);
+        const double longest =
+            0.5 * (variance.x + variance.y) + std::hypot(0.5 * (variance.x - variance.y), xy);
         return countTilesOfSquare(splat.reference_px, std::ceil(kSigmas * std::sqrt(longest)), size_px);
     }
     // The public rasterizer's box, flaws included: the conic at 3 sigma, at least 3 sigma of the low-pass.
@@ -163,7 +166,8 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
     const glm::dvec2 centre(glm::dot(f, splat.row_u * w), glm::dot(f, splat.row_v * w));
     const double extent_x = centre.x * centre.x - glm::dot(f, splat.row_u * splat.row_u);
     const double extent_y = centre.y * centre.y - glm::dot(f, splat.row_v * splat.row_v);
-    const double radius = std::ceil(std::max(std::sqrt(std::max({extent_x, extent_y, 1e-4})), kSigmas * std::sqrt(0.5)));
+    const double radius =
+        std::ceil(std::max(std::sqrt(std::max({extent_x, extent_y, 1e-4})), kSigmas * std::sqrt(0.5)));
     return countTilesOfSquare(centre, radius, size_px);
 }
 

@@ -103,8 +103,8 @@ Page boundPage(const Scene& scene, std::size_t first, std::size_t count);
 // cull_pages: which pages may hold splats that cull keeps for any of the eyes (1 or 0 per page): those whose
 // box reaches the inner side of each plane of the view. The planes are moved outwards by `slack` times the
 // box's distance.
-std::vector<std::uint8_t> cullPages(std::span<const Page> pages, bool gaussians, std::span<const Eye> eyes, const Settings& settings,
-                                    double slack = 0.0);
+std::vector<std::uint8_t> cullPages(std::span<const Page> pages, bool gaussians, std::span<const Eye> eyes,
+                                    const Settings& settings, double slack = 0.0);
 
 // cull: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
 std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
@@ -115,18 +115,21 @@ struct Visible {
     std::vector<std::uint32_t> splats;
     std::vector<double> depths;
 };
-Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye, const Settings& settings = {});
+Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye,
+                const Settings& settings = {});
 
 // sort_depth: the same splats, front to back, ties by index.
 std::vector<std::uint32_t> sortDepth(const Visible& visible, const Settings& settings = {});
 
 // project: one eye's view of each splat, in the given order.
-std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings);
+std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye,
+                                    const Settings& settings);
 
 // bin: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer
 // than near, in depth order, with tiles ascending within a splat. If the disc's own hit is nearer than near,
 // or behind the eye, only the low-pass remains (rho = rho2), if there is one.
-std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
+std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px,
+                          const Settings& settings);
 
 // Also bin: removes the pairs in hidden tiles. `hidden` has a byte a tile, 1 for these; empty: none.
 void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
@@ -136,8 +139,8 @@ void sortTiles(std::vector<TilePair>& pairs, const Settings& settings = {});
 std::vector<TileRange> tileRanges(std::span<const TilePair> pairs, glm::uvec2 size_px);
 
 // rasterize: blending, front to back.
-Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges,
-                  const Eye& eye, const Settings& settings);
+Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs,
+                  std::span<const TileRange> ranges, const Eye& eye, const Settings& settings);
 
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
@@ -147,8 +150,9 @@ Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
 // densest along the ray. D is summed as in rasterize(). `pairs` and `splats` follow `order`. With a `window`,
 // hits come in that order, this many of them wait, and the nearest of these is blended next (Radl et al.
 // 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
-Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
-                         std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
+Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order,
+                         std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs,
+                         std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
                          std::size_t window = SIZE_MAX);
 
 }  // namespace binosplat::reference

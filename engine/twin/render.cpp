@@ -13,7 +13,8 @@ auto timePass(const Settings& settings, Pass pass, const Work& work) {
     const auto start = std::chrono::steady_clock::now();
     auto result = work();
     if (settings.seconds != nullptr) {
-        settings.seconds[pass] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        settings.seconds[pass] =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     return result;
 }
@@ -24,7 +25,8 @@ Picture render(const Scene& scene, const Eye& eye, const Settings& asked) {
     Settings settings = asked;
     settings.is_light = scene.is_linear;
     const auto visible = timePass(settings, kCull, [&] { return cull(scene, {&eye, 1}, settings); });
-    const auto compacted = timePass(settings, kCompact, [&] { return compact(scene, visible, eye, settings); });
+    const auto compacted =
+        timePass(settings, kCompact, [&] { return compact(scene, visible, eye, settings); });
     const auto order = timePass(settings, kSortDepth, [&] { return sortDepth(compacted, settings); });
     const auto splats = timePass(settings, kProject, [&] { return project(scene, order, eye, settings); });
     auto pairs = timePass(settings, kBin, [&] { return bin(splats, eye.size_px, settings); });

@@ -11,14 +11,16 @@ namespace {
 
 // Splats that both eyes see, as one of them sees them; pairs by splat.
 struct EyeSplats {
-    EyeSplats(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings)
+    EyeSplats(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye,
+              const Settings& settings)
         : splats(project(scene, order, eye, settings)), pairs(bin(splats, eye.size_px, settings)) {}
 
     std::vector<ProjectedSplat> splats;
     std::vector<TilePair> pairs;
 };
 
-Picture rasterizePairs(const EyeSplats& seen, std::vector<TilePair> pairs, const Eye& eye, const Settings& settings) {
+Picture rasterizePairs(const EyeSplats& seen, std::vector<TilePair> pairs, const Eye& eye,
+                       const Settings& settings) {
     sortTiles(pairs, settings);
     return rasterize(seen.splats, pairs, tileRanges(pairs, eye.size_px), eye, settings);
 }
@@ -29,7 +31,8 @@ std::vector<TileRange> tilesOfPairs(std::vector<TilePair> pairs, glm::uvec2 size
 }
 
 // Renders the marked tiles over the existing picture.
-void patch(StereoPictures& pictures, const Scene& scene, const Visible& visible, const Eye& eye, Settings settings) {
+void patch(StereoPictures& pictures, const Scene& scene, const Visible& visible, const Eye& eye,
+           Settings settings) {
     const EyeSplats seen(scene, sortDepth(visible, settings), eye, settings);
     std::vector<TilePair> pairs = seen.pairs;
     const auto isAgain = [](TileKind kind) { return kind != TileKind::kNone && kind != TileKind::kHidden; };
@@ -47,7 +50,8 @@ void patch(StereoPictures& pictures, const Scene& scene, const Visible& visible,
 
 }  // namespace
 
-StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo, Settings settings) {
+StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo,
+                            Settings settings) {
     settings.inverse_depth_moments = true;
     settings.is_light = scene.is_linear;
     const glm::uvec2 size_px = eyes.source.size_px, tiles = tileGrid(size_px);
@@ -67,7 +71,8 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         pictures.tile_kinds = std::move(weighed.kinds);
         pictures.tile_costs = std::move(weighed.costs);
     } else if (stereo.choice == TileChoice::kPaper) {
-        const InverseDepthBounds bounds = findInverseDepthBounds(boundDepths(pictures.dominant, stereo.depth_choice));
+        const InverseDepthBounds bounds =
+            findInverseDepthBounds(boundDepths(pictures.dominant, stereo.depth_choice));
         pictures.tile_kinds = markEdges(findBorders(bounds, eyes, stereo), size_px);
         markHidden(pictures.tile_kinds, stereo);
         markBehindHidden(pictures.tile_kinds, eyes, stereo);
@@ -77,21 +82,30 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
 
     const std::vector<Arrival> arrivals = reproject(pictures.dominant, eyes, stereo);
     pictures.resolved = resolve(arrivals, eyes, stereo);
-    if (predicts && EyeChange(eyes.target, eyes.source).keepsRows()) { moveOddRowsAlike(pictures.resolved, size_px); }
-    pictures.affiliated = stereo.forward ? copyColours(pictures.dominant, arrivals, pictures.tile_kinds, eyes, settings.background)
-                                         : resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes, settings.background);
-    pictures.affiliated_depth = resampleDepths(pictures.affiliated, pictures.resolved, pictures.tile_kinds, size_px);
+    if (predicts && EyeChange(eyes.target, eyes.source).keepsRows()) {
+        moveOddRowsAlike(pictures.resolved, size_px);
+    }
+    pictures.affiliated =
+        stereo.forward
+            ? copyColours(pictures.dominant, arrivals, pictures.tile_kinds, eyes, settings.background)
+            : resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes, settings.background);
+    pictures.affiliated_depth =
+        resampleDepths(pictures.affiliated, pictures.resolved, pictures.tile_kinds, size_px);
     if (predicts) {
         std::vector<double>& errors = pictures.tile_errors;
-        errors = expectErrors(pictures.resolved, arrivals, pictures.dominant, pictures.tile_kinds, eyes, stereo);
+        errors =
+            expectErrors(pictures.resolved, arrivals, pictures.dominant, pictures.tile_kinds, eyes, stereo);
         const EyeSplats target(scene, order, eyes.target, settings);
-        addNewcomers(errors, target.splats, target.pairs, source.pairs, pictures.dominant, pictures.tile_kinds, stereo);
-        const std::vector<double> shares = stereo.target_gaze ? findSeenShares(eyes.target, *stereo.target_gaze) : std::vector<double>();
+        addNewcomers(errors, target.splats, target.pairs, source.pairs, pictures.dominant,
+                     pictures.tile_kinds, stereo);
+        const std::vector<double> shares =
+            stereo.target_gaze ? findSeenShares(eyes.target, *stereo.target_gaze) : std::vector<double>();
         const auto whole_prices = price(pictures.tile_kinds, errors, pictures.tile_costs);
-        select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs, shares), pictures.tile_costs, budget_cost,
-               whole_prices);
+        select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs, shares),
+               pictures.tile_costs, budget_cost, whole_prices);
         if (stereo.target_gaze) {
-            averageRows(pictures.affiliated, pictures.affiliated_depth, pictures.resolved, pictures.tile_kinds, shares, size_px);
+            averageRows(pictures.affiliated, pictures.affiliated_depth, pictures.resolved,
+                        pictures.tile_kinds, shares, size_px);
         }
     } else if (stereo.choice == TileChoice::kPaper && stereo.center_rois) {
         markComponents(pictures.resolved, pictures.tile_kinds, size_px, stereo.margin_px);

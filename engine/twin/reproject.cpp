@@ -15,8 +15,11 @@ struct Arrivals {
 
     void put(const glm::ivec2& at, const Arrival& arrival) {
         if (at.x < 0 || at.y < 0 || at.x >= size_px.x || at.y >= size_px.y) { return; }
-        Arrival& there = pixels[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size_px.x) + static_cast<std::size_t>(at.x)];
-        const auto rank = [](const Arrival& a) { return std::tuple(roundedDepth(a.inverse_depth), a.way, a.spread); };
+        Arrival& there = pixels[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size_px.x) +
+                                static_cast<std::size_t>(at.x)];
+        const auto rank = [](const Arrival& a) {
+            return std::tuple(roundedDepth(a.inverse_depth), a.way, a.spread);
+        };
         if (there.way == Arrival::kNone || rank(arrival) > rank(there)) { there = arrival; }
     }
 };
@@ -52,12 +55,17 @@ void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const 
     for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
             const glm::ivec2 at(x, y);
-            if (at == pixelOf(here.place_px) || at == pixelOf(right.place_px) || at == pixelOf(below.place_px)) { continue; }
+            if (at == pixelOf(here.place_px) || at == pixelOf(right.place_px) ||
+                at == pixelOf(below.place_px)) {
+                continue;
+            }
             const glm::dvec2 share = shares_from_offset * (glm::dvec2(at) + 0.5 - here.place_px);
             if (share.x < 0.0 || share.y < 0.0 || share.x > 1.0 || share.y > 1.0) { continue; }
-            const double across = right.inverse_depth - here.inverse_depth, down = below.inverse_depth - here.inverse_depth;
+            const double across = right.inverse_depth - here.inverse_depth,
+                         down = below.inverse_depth - here.inverse_depth;
             const double inverse_depth = here.inverse_depth + share.x * across + share.y * down;
-            arrivals.put(at, {Arrival::kBetween, inverse_depth, std::max({here.spread, right.spread, below.spread})});
+            arrivals.put(
+                at, {Arrival::kBetween, inverse_depth, std::max({here.spread, right.spread, below.spread})});
         }
     }
 }
@@ -83,9 +91,13 @@ constexpr int kHiddenMarginPx = 3;
 bool isWellInside(const std::vector<std::uint8_t>& hidden, const glm::ivec2& pixel, const glm::ivec2& size) {
     if (hidden.empty()) { return true; }
     const int columns = (size.x + kTileSize - 1) / kTileSize;
-    for (int y = std::max(pixel.y - kHiddenMarginPx, 0); y <= std::min(pixel.y + kHiddenMarginPx, size.y - 1); ++y) {
-        for (int x = std::max(pixel.x - kHiddenMarginPx, 0); x <= std::min(pixel.x + kHiddenMarginPx, size.x - 1); ++x) {
-            if (hidden[static_cast<std::size_t>(y / kTileSize * columns + x / kTileSize)] != 0) { return false; }
+    for (int y = std::max(pixel.y - kHiddenMarginPx, 0); y <= std::min(pixel.y + kHiddenMarginPx, size.y - 1);
+         ++y) {
+        for (int x = std::max(pixel.x - kHiddenMarginPx, 0);
+             x <= std::min(pixel.x + kHiddenMarginPx, size.x - 1); ++x) {
+            if (hidden[static_cast<std::size_t>(y / kTileSize * columns + x / kTileSize)] != 0) {
+                return false;
+            }
         }
     }
     return true;
@@ -100,12 +112,14 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
     Arrivals arrivals{size, std::vector<Arrival>(dominant.rgba.size())};
     // Where a pixel goes; nowhere if its depth is invalid or it ends up behind the target.
     const auto moved = [&](int x, int y) -> std::optional<Moved> {
-        if (x >= size.x || y >= size.y || !isWellInside(settings.source_hidden, {x, y}, size)) { return std::nullopt; }
+        if (x >= size.x || y >= size.y || !isWellInside(settings.source_hidden, {x, y}, size)) {
+            return std::nullopt;
+        }
         const auto pixel = movingPixel(dominant, static_cast<std::size_t>(y * size.x + x), settings);
         if (!pixel) { return std::nullopt; }
         const bool mixed = !settings.forward && pixel->spread >= kMixedCode;
-        const EyeChange::Moved there =
-            change.move({x + 0.5, y + 0.5}, mixed ? frontBeside(dominant, x, y, settings) : pixel->inverse_depth);
+        const EyeChange::Moved there = change.move(
+            {x + 0.5, y + 0.5}, mixed ? frontBeside(dominant, x, y, settings) : pixel->inverse_depth);
         return there.in_front ? std::optional(Moved{there, pixel->spread}) : std::nullopt;
     };
     for (int y = 0; y < size.y; ++y) {
@@ -115,7 +129,8 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
             if (settings.forward) {  // only pixels move, and their sources are stored
                 const auto source = static_cast<std::size_t>(y * size.x + x);
                 const std::uint32_t parity = (x % 2 == 1 ? 1u : 0u) + (y % 2 == 1 ? 2u : 0u);
-                arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, parity, source});
+                arrivals.put(pixelOf(here->place_px),
+                             {Arrival::kLanded, here->inverse_depth, parity, source});
                 continue;
             }
             arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, here->spread});

@@ -32,8 +32,9 @@ glm::dvec4 sample(const Picture& picture, const glm::dvec2& place_px) {
 
 }  // namespace
 
-std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                 const EyePair& eyes, const glm::dvec3& background) {
+std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved,
+                                 std::span<const TileKind> kinds, const EyePair& eyes,
+                                 const glm::dvec3& background) {
     const EyeChange source_from_target(eyes.source, eyes.target);
     const std::size_t width = dominant.size_px.x, columns = tileGrid(dominant.size_px).x;
     std::vector<glm::dvec4> colours(resolved.size(), glm::dvec4(0.0));
@@ -42,14 +43,16 @@ std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolv
         const TileKind kind = kinds[y / kTileSize * columns + x / kTileSize];
         if (kind == TileKind::kHidden) { colours[i] = glm::dvec4(background, 0.0); }
         if (kind != TileKind::kNone) { continue; }
-        const glm::dvec2 pixel_px(resolved[i].column + 0.5, static_cast<double>(y - resolved[i].rows_up) + 0.5);
+        const glm::dvec2 pixel_px(resolved[i].column + 0.5,
+                                  static_cast<double>(y - resolved[i].rows_up) + 0.5);
         colours[i] = sample(dominant, source_from_target.move(pixel_px, resolved[i].inverse_depth).place_px);
     }
     return colours;
 }
 
-std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
-                                    const EyePair& eyes, const glm::dvec3& background) {
+std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals,
+                                    std::span<const TileKind> kinds, const EyePair& eyes,
+                                    const glm::dvec3& background) {
     const EyeChange source_from_target(eyes.source, eyes.target);
     const std::size_t width = dominant.size_px.x, columns = tileGrid(dominant.size_px).x;
     const auto arrived = [&](std::size_t i) { return arrivals[i].way != Arrival::kNone; };
@@ -66,18 +69,23 @@ std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arr
         if (history_left == begin && right == end) {
             const glm::dvec2 place = source_from_target.move(glm::dvec2(x, y) + 0.5, 0.0).place_px;
             const glm::dvec2 inside = glm::clamp(place, glm::dvec2(0.5), glm::dvec2(dominant.size_px) - 0.5);
-            colours[i] = dominant.rgba[static_cast<std::size_t>(inside.y) * width + static_cast<std::size_t>(inside.x)];
+            colours[i] =
+                dominant
+                    .rgba[static_cast<std::size_t>(inside.y) * width + static_cast<std::size_t>(inside.x)];
             continue;
         }
-        const std::size_t first = history_left > begin ? history_left - 1 : right, last = right < end ? right : first;
-        const double share = first == last ? 0.0 : static_cast<double>(i - first) / static_cast<double>(last - first);
-        colours[i] = (1.0 - share) * dominant.rgba[arrivals[first].source] + share * dominant.rgba[arrivals[last].source];
+        const std::size_t first = history_left > begin ? history_left - 1 : right,
+                          last = right < end ? right : first;
+        const double share =
+            first == last ? 0.0 : static_cast<double>(i - first) / static_cast<double>(last - first);
+        colours[i] = (1.0 - share) * dominant.rgba[arrivals[first].source] +
+                     share * dominant.rgba[arrivals[last].source];
     }
     return colours;
 }
 
-std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                   glm::uvec2 size_px) {
+std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved,
+                                   std::span<const TileKind> kinds, glm::uvec2 size_px) {
     const std::size_t width = size_px.x, columns = tileGrid(size_px).x;
     std::vector<double> depths(resolved.size(), 0.0);
     for (std::size_t i = 0; i < resolved.size(); ++i) {
@@ -87,8 +95,9 @@ std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::spa
     return depths;
 }
 
-void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths, std::vector<Resolved>& resolved,
-                 std::span<const TileKind> kinds, std::span<const double> seen_shares, glm::uvec2 size_px) {
+void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths,
+                 std::vector<Resolved>& resolved, std::span<const TileKind> kinds,
+                 std::span<const double> seen_shares, glm::uvec2 size_px) {
     const std::size_t width = size_px.x, columns = tileGrid(size_px).x;
     for (std::size_t y = 1; y + 1 < size_px.y; y += 2) {
         if ((y + 1) % kTileSize == 0) { continue; }

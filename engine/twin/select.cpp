@@ -14,7 +14,8 @@ struct BudgetEnd {
     std::optional<std::uint32_t> last;
     std::uint64_t left;
 };
-BudgetEnd findEnd(const std::map<std::uint32_t, std::uint64_t, std::greater<>>& cost_of_price, std::uint64_t budget_cost) {
+BudgetEnd findEnd(const std::map<std::uint32_t, std::uint64_t, std::greater<>>& cost_of_price,
+                  std::uint64_t budget_cost) {
     std::uint64_t left = budget_cost;
     for (const auto& [price, cost] : cost_of_price) {
         if (cost > left) { return {price, left}; }
@@ -25,8 +26,9 @@ BudgetEnd findEnd(const std::map<std::uint32_t, std::uint64_t, std::greater<>>& 
 
 }  // namespace
 
-void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
-            std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices) {
+void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices,
+            std::span<const std::uint64_t> costs, std::uint64_t budget_cost,
+            std::span<const std::optional<std::uint32_t>> whole_prices) {
     const std::span<const std::optional<std::uint32_t>> whole = whole_prices.empty() ? prices : whole_prices;
     std::map<std::uint32_t, std::uint64_t, std::greater<>> cost_of_price;
     for (std::size_t tile = 0; tile < whole.size(); ++tile) {
@@ -46,7 +48,8 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
     }
 }
 
-std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost, std::uint64_t picture_cost) {
+std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost,
+                               std::uint64_t picture_cost) {
     std::uint64_t over = 0, unseen = 0;
     for (const PricedTiles& picture : pictures) {
         for (std::size_t t = 0; t < picture.prices.size(); ++t) {

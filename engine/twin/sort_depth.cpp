@@ -37,8 +37,9 @@ std::vector<std::uint32_t> sortDepth(const Visible& visible, const Settings& set
     for (int shift = 0; shift < 64; shift += kDigitBits) {
         // A digit that all keys share needs no pass.
         if (((ones & zeros) >> shift & kDigitMask) == 0) { continue; }
-        sortByBucket(std::span<const Key>(keys), std::span(sorted), kDigitMask + 1, settings.threads,
-                     [shift](const Key& key) { return static_cast<std::size_t>(key.bits >> shift & kDigitMask); });
+        sortByBucket(
+            std::span<const Key>(keys), std::span(sorted), kDigitMask + 1, settings.threads,
+            [shift](const Key& key) { return static_cast<std::size_t>(key.bits >> shift & kDigitMask); });
         std::swap(keys, sorted);
     }
     std::vector<std::uint32_t> order(keys.size());

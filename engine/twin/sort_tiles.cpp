@@ -8,8 +8,8 @@ void sortTiles(std::vector<TilePair>& pairs, const Settings& settings) {
     std::uint32_t last_tile = 0;
     for (const TilePair& pair : pairs) { last_tile = std::max(last_tile, pair.tile); }
     std::vector<TilePair> sorted(pairs.size());
-    sortByBucket(std::span<const TilePair>(pairs), std::span(sorted), std::size_t{last_tile} + 1, settings.threads,
-                 [](const TilePair& pair) { return std::size_t{pair.tile}; });
+    sortByBucket(std::span<const TilePair>(pairs), std::span(sorted), std::size_t{last_tile} + 1,
+                 settings.threads, [](const TilePair& pair) { return std::size_t{pair.tile}; });
     pairs = std::move(sorted);
 }
 

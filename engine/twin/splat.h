@@ -24,7 +24,9 @@ inline constexpr double kDepthReach = 2.0;
 // tell.
 inline constexpr double kMinPlaneSine = 1e-14;
 
-inline bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool isFinite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 inline glm::uvec2 tileGrid(glm::uvec2 size_px) {
     return {(size_px.x + kTileSize - 1) / kTileSize, (size_px.y + kTileSize - 1) / kTileSize};
@@ -66,9 +68,11 @@ struct ScreenGaussian {
 inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& eye) {
     const Intrinsics& k = eye.intrinsics;
     const glm::dvec2 focal(k.fx, k.fy), principal(k.cx, k.cy), border = 0.3 * 0.5 * eye.size_px;
-    const glm::dvec2 slope =
-        glm::clamp(glm::dvec2(splat.c) / splat.c.z, (-principal - border) / focal, (eye.size_px - principal + border) / focal);
-    const auto project = [&](const glm::dvec3& axis) { return focal / splat.c.z * (glm::dvec2(axis) - slope * axis.z); };
+    const glm::dvec2 slope = glm::clamp(glm::dvec2(splat.c) / splat.c.z, (-principal - border) / focal,
+                                        (eye.size_px - principal + border) / focal);
+    const auto project = [&](const glm::dvec3& axis) {
+        return focal / splat.c.z * (glm::dvec2(axis) - slope * axis.z);
+    };
     const glm::dvec2 a = project(splat.a), b = project(splat.b), w = project(splat.w);
     const auto cross = [](const glm::dvec2& p, const glm::dvec2& q) { return p.x * q.y - p.y * q.x; };
     const double variance = kScreenVariance * eye.own_pixel_px * eye.own_pixel_px;
@@ -93,14 +97,19 @@ inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat
     const glm::dvec3 from_eye = glm::dvec3(scene.positions[splat]) - eye.position_world;
     const glm::quat& stored = scene.rotations[splat];
     // A quaternion of length zero becomes NaN here, and the splat invisible.
-    const glm::dmat3 disc = glm::mat3_cast(glm::dquat(stored.w, stored.x, stored.y, stored.z) /
-                                           std::sqrt(static_cast<double>(stored.w) * stored.w + static_cast<double>(stored.x) * stored.x +
-                                                     static_cast<double>(stored.y) * stored.y + static_cast<double>(stored.z) * stored.z));
-    const CameraSplat result{
-        static_cast<double>(scene.scales[splat].x) * (eye.camera_from_world * disc[0]),
-        static_cast<double>(scene.scales[splat].y) * (eye.camera_from_world * disc[1]), eye.camera_from_world * from_eye, cut,
-        scene.isGaussian3d() ? static_cast<double>(scene.thicknesses[splat]) * (eye.camera_from_world * disc[2]) : glm::dvec3(0.0)};
-    if (!isFinite(result.a) || !isFinite(result.b) || !isFinite(result.c) || !isFinite(result.w)) { return std::nullopt; }
+    const glm::dmat3 disc = glm::mat3_cast(
+        glm::dquat(stored.w, stored.x, stored.y, stored.z) /
+        std::sqrt(static_cast<double>(stored.w) * stored.w + static_cast<double>(stored.x) * stored.x +
+                  static_cast<double>(stored.y) * stored.y + static_cast<double>(stored.z) * stored.z));
+    const CameraSplat result{static_cast<double>(scene.scales[splat].x) * (eye.camera_from_world * disc[0]),
+                             static_cast<double>(scene.scales[splat].y) * (eye.camera_from_world * disc[1]),
+                             eye.camera_from_world * from_eye, cut,
+                             scene.isGaussian3d() ? static_cast<double>(scene.thicknesses[splat]) *
+                                                        (eye.camera_from_world * disc[2])
+                                                  : glm::dvec3(0.0)};
+    if (!isFinite(result.a) || !isFinite(result.b) || !isFinite(result.c) || !isFinite(result.w)) {
+        return std::nullopt;
+    }
     return result;
 }
 
@@ -118,7 +127,8 @@ inline PixelRows pixelRows(const ProjectedSplat& splat, glm::uvec2 size_px) {
     const glm::dvec2 away = glm::abs(splat.reference_px - middle);
     const bool at_centre = splat.low_pass && std::max(away.x, away.y) <= 4.0 * std::max(size.x, size.y);
     const glm::dvec2 origin = at_centre ? splat.reference_px : middle;
-    PixelRows rows{splat.row_u - origin.x * splat.row_w, splat.row_v - origin.y * splat.row_w, splat.row_w, origin};
+    PixelRows rows{splat.row_u - origin.x * splat.row_w, splat.row_v - origin.y * splat.row_w, splat.row_w,
+                   origin};
     if (at_centre) { rows.u.z = rows.v.z = 0.0; }
     return rows;
 }
@@ -189,8 +199,8 @@ inline bool meet(const RayPlane& plane, const glm::dvec2& pixel, Hit& hit) {
         if (inverse_depth > 0.0 && plane.near * inverse_depth <= 1.0 && square < plane.cut * scale) {
             hit = {square / scale, 1.0 / inverse_depth};
             if (plane.gaussian) {
-                hit.depth = 1.0 / std::clamp(inverse_depth + glm::dot(plane.depth_slope, d), inverse_depth / kDepthReach,
-                                             inverse_depth * kDepthReach);
+                hit.depth = 1.0 / std::clamp(inverse_depth + glm::dot(plane.depth_slope, d),
+                                             inverse_depth / kDepthReach, inverse_depth * kDepthReach);
             }
             met = true;
         }

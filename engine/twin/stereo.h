@@ -56,7 +56,8 @@ struct MovingPixel {
     double inverse_depth;
     std::uint32_t spread;  // a code
 };
-std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel, const StereoSettings& settings);
+std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel,
+                                       const StereoSettings& settings);
 
 // weigh: which tiles are rendered before anything is known about errors, and the cost of each, in pairs of
 // the source's.
@@ -66,9 +67,11 @@ struct Weighed {
     std::uint64_t picture_cost, saved_cost;  // of all tiles that are shown; saved by reprojecting tiles
     bool moves;                              // true if any tile is reprojected
 };
-Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes, const StereoSettings& settings);
+Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes,
+              const StereoSettings& settings);
 // Also weigh: what the source sees in the middle of this tile.
-std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile, const StereoSettings& settings);
+std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile,
+                                          const StereoSettings& settings);
 // Also weigh: the tiles that reach beyond the source's view by more than a gap even if everything is
 // infinitely far (kEdge).
 std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
@@ -119,46 +122,53 @@ struct Resolved {
     std::uint32_t spread;       // a code; 0 where nothing arrived
     std::uint32_t rows_up = 0;  // of the source, above its own
 };
-std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
+std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes,
+                              const StereoSettings& settings);
 // Also resample, if errors are predicted and pixels keep their rows: an odd row takes over the places of the
 // even one above it, seen in its own row of the source; a pixel that repeats another column's does so from
 // the even row.
 void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px);
 // Also resample: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles, but background
 // in hidden ones.
-std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                 const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
+std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved,
+                                 std::span<const TileKind> kinds, const EyePair& eyes,
+                                 const glm::dvec3& background = glm::dvec3(0.0));
 // Also resample, if colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel
 // that arrived, unchanged, and between two in a row their linear interpolation.
-std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
-                                    const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
+std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals,
+                                    std::span<const TileKind> kinds, const EyePair& eyes,
+                                    const glm::dvec3& background = glm::dvec3(0.0));
 // Also resample: D of these pixels, their alpha over their inverse depth; 0 if that is infinitely far, and in
 // marked tiles.
-std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                   glm::uvec2 size_px);
+std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved,
+                                   std::span<const TileKind> kinds, glm::uvec2 size_px);
 // Also resample: the expected squared error of each unmarked tile: of holes, of pixels whose depth is
 // uncertain, and of sampling.
-std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
-                                 std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings);
+std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals,
+                                 const Picture& dominant, std::span<const TileKind> kinds,
+                                 const EyePair& eyes, const StereoSettings& settings);
 
 // newcomers: adds the expected errors of splats that only the target sees to unmarked tiles, if their centre
 // is nearer than what the source sees in the middle of its tile. Splats are in one order, pairs are by splat.
 // Returns the number of such splats.
-std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
-                         std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
+std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats,
+                         std::span<const TilePair> target_pairs, std::span<const TilePair> source_pairs,
+                         const Picture& dominant, std::span<const TileKind> kinds,
                          const StereoSettings& settings);
 
 // components: holes in unmarked tiles, grouped if they touch, including at corners; marks the tiles of each
 // group's box, grown by the margin. With more groups than `most_boxes` every pixel is a group of its own.
 // Returns the number of groups.
-std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds, glm::uvec2 size_px, int margin_px,
-                           std::size_t most_boxes = SIZE_MAX);
+std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds,
+                           glm::uvec2 size_px, int margin_px, std::size_t most_boxes = SIZE_MAX);
 
 // price: which sixteenth of an octave of error per pair each unmarked tile is in, from 2^-43 upwards; empty
 // for tiles without an error. `seen_shares`: the share of each tile's squared error that the eye sees; empty:
 // all of it. Also empty for a tile that is seen only in part and whose seen error is not noticed.
-std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds, std::span<const double> errors,
-                                                std::span<const std::uint64_t> costs, std::span<const double> seen_shares = {});
+std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds,
+                                                std::span<const double> errors,
+                                                std::span<const std::uint64_t> costs,
+                                                std::span<const double> seen_shares = {});
 // Also price: the finest cycle that an eye resolves is w0 + m e, with w0 = 1/48 degree and m = 0.022, at an
 // angle e from its gaze (Guenter, Finch, Drucker, Tan, Snyder, Foveated 3D Graphics, 2012); a picture has
 // cycles of two pixels and longer. The share that the eye sees of an error spread over all of these is the
@@ -168,14 +178,16 @@ std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze);
 // select: from the highest price down, the first of equals first, the tiles that together cost no more than
 // `budget_cost`. `whole_prices`: the prices if all errors were seen whole; empty: the same. The budget ends
 // where it would with these, and tiles worth less than that are not rendered.
-void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
-            std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices = {});
+void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices,
+            std::span<const std::uint64_t> costs, std::uint64_t budget_cost,
+            std::span<const std::optional<std::uint32_t>> whole_prices = {});
 
 // resample again, if the tiles' `seen_shares` are known: where the eye sees at most a quarter of an error,
 // its finest cycle covers four pixels, and an odd row of an unmarked tile is the mean of those above and
 // below, with the upper one's classes. The last row of a tile or of the picture stays as it is.
-void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths, std::vector<Resolved>& resolved,
-                 std::span<const TileKind> kinds, std::span<const double> seen_shares, glm::uvec2 size_px);
+void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths,
+                 std::vector<Resolved>& resolved, std::span<const TileKind> kinds,
+                 std::span<const double> seen_shares, glm::uvec2 size_px);
 
 // All passes: both eyes' pictures, source first.
 struct StereoPictures {
@@ -187,6 +199,7 @@ struct StereoPictures {
     std::vector<std::uint64_t> tile_costs;  // of kPredicted
     std::vector<Resolved> resolved;
 };
-StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo, Settings settings);
+StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo,
+                            Settings settings);
 
 }  // namespace binosplat::reference

@@ -20,7 +20,8 @@ struct BlockFromHistory {
 
 // The inverse depth of the nearest content that comes to lie at a place from beyond its neighbours; 0: none
 // in front of `known`. `moves_px`: how far it moves per unit of inverse depth.
-double nearestOnTheWay(const HistoryView& view, const glm::dvec2& wanted_px, double moves_px, double known, double near) {
+double nearestOnTheWay(const HistoryView& view, const glm::dvec2& wanted_px, double moves_px, double known,
+                       double near) {
     const int steps = static_cast<int>(std::min(moves_px / near / kSearchStepPx, double{kMostSearched}));
     double nearest = 0.0;
     for (int i = 1; i <= steps; ++i) {
@@ -29,7 +30,9 @@ double nearestOnTheWay(const HistoryView& view, const glm::dvec2& wanted_px, dou
         const HistoryView::Seen seen = view.look(place.place_px);
         const glm::dvec2 off_px = glm::abs(seen.lands_px - wanted_px);
         const bool comes = seen.pixel && std::max(off_px.x, off_px.y) <= kSearchStepPx;
-        if (comes && moves_px * (seen.inverse_depth - known) > 1.0) { nearest = std::max(nearest, seen.inverse_depth); }
+        if (comes && moves_px * (seen.inverse_depth - known) > 1.0) {
+            nearest = std::max(nearest, seen.inverse_depth);
+        }
     }
     return nearest;
 }
@@ -40,14 +43,15 @@ BlockFromHistory findBlock(const HistoryView& view, const glm::ivec2& first, dou
     const EyeChange::Moved source = view.place(middle_px, guess);
     BlockFromHistory block{source.in_front, source.place_px, {}, glm::dvec2(0.0), 0.0, HUGE_VAL};
     const glm::dvec2 in_reach = glm::clamp(source.place_px, glm::dvec2(-1e6), glm::dvec2(1e6));
-    const glm::ivec2 corner = glm::ivec2(glm::floor(in_reach + 0.5)) - kHistoryBlock / 2, end = corner + kHistoryBlock - 1;
-    block.whole = block.whole && glm::all(glm::greaterThanEqual(corner, glm::ivec2(0))) && glm::all(glm::lessThanEqual(end, view.last)) &&
-                  !view.reachesHidden(corner, end);
+    const glm::ivec2 corner = glm::ivec2(glm::floor(in_reach + 0.5)) - kHistoryBlock / 2,
+                     end = corner + kHistoryBlock - 1;
+    block.whole = block.whole && glm::all(glm::greaterThanEqual(corner, glm::ivec2(0))) &&
+                  glm::all(glm::lessThanEqual(end, view.last)) && !view.reachesHidden(corner, end);
 
     const auto seenAt = [&](const glm::ivec2& at) {
         const std::optional<MovingPixel> pixel = view.pixel(glm::clamp(at, glm::ivec2(0), view.last));
-        const EyeChange::Moved moved =
-            view.now_from_history.move(glm::dvec2(glm::clamp(at, glm::ivec2(0), view.last)) + 0.5, pixel ? pixel->inverse_depth : 0.0);
+        const EyeChange::Moved moved = view.now_from_history.move(
+            glm::dvec2(glm::clamp(at, glm::ivec2(0), view.last)) + 0.5, pixel ? pixel->inverse_depth : 0.0);
         return pixel ? std::optional(MovingPixel{moved.inverse_depth, pixel->spread}) : std::nullopt;
     };
     const auto widen = [&](double inverse_depth) {
@@ -63,7 +67,8 @@ BlockFromHistory findBlock(const HistoryView& view, const glm::ivec2& first, dou
             block.spread = std::max(block.spread, pixel ? pixel->spread : 0);
             const glm::dvec2 here_px = glm::dvec2(first + glm::ivec2(x, y)) + 0.5;
             block.mean_move_px +=
-                (view.place(here_px, pixel ? pixel->inverse_depth : 0.0).place_px - here_px) / double(kHistoryBlock.x * kHistoryBlock.y);
+                (view.place(here_px, pixel ? pixel->inverse_depth : 0.0).place_px - here_px) /
+                double(kHistoryBlock.x * kHistoryBlock.y);
         }
     }
     const double differ = 0.5 * (block.nearest - block.farthest);
@@ -71,7 +76,8 @@ BlockFromHistory findBlock(const HistoryView& view, const glm::ivec2& first, dou
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             if (x == 0 && y == 0) { continue; }
-            const std::optional<MovingPixel> pixel = seenAt(corner + kHistoryBlock / 2 + glm::ivec2(x, y) * (kHistoryBlock / 2 + kBorder));
+            const std::optional<MovingPixel> pixel =
+                seenAt(corner + kHistoryBlock / 2 + glm::ivec2(x, y) * (kHistoryBlock / 2 + kBorder));
             widen(pixel ? pixel->inverse_depth : 0.0);
         }
     }
@@ -80,13 +86,16 @@ BlockFromHistory findBlock(const HistoryView& view, const glm::ivec2& first, dou
     block.nearest = std::max(block.nearest, nearestOnTheWay(view, middle_px, moves_px, block.nearest, near));
     // What is found there must belong there: it must land where it was searched for.
     double mean = 0.0;
-    for (const auto& pixel : block.pixels) { mean += (pixel ? pixel->inverse_depth : 0.0) / double(kHistoryBlock.x * kHistoryBlock.y); }
+    for (const auto& pixel : block.pixels) {
+        mean += (pixel ? pixel->inverse_depth : 0.0) / double(kHistoryBlock.x * kHistoryBlock.y);
+    }
     block.whole = block.whole && moves_px * std::abs(mean - guess) <= kAgreesPx;
     // Not stretched along either axis, and of about one depth.
     const auto stretch = [&](int axis) {
         glm::dvec2 half(0.0);
         half[axis] = 0.5 * kHistoryBlock[axis];
-        const double length = view.place(middle_px + half, guess).place_px[axis] - view.place(middle_px - half, guess).place_px[axis];
+        const double length = view.place(middle_px + half, guess).place_px[axis] -
+                              view.place(middle_px - half, guess).place_px[axis];
         return 0.5 * (kHistoryBlock[axis] - 1) * std::abs(length / kHistoryBlock[axis] - 1.0);
     };
     block.whole = block.whole && std::max({stretch(0), stretch(1), moves_px * differ}) <= kSmoothPx &&
@@ -101,10 +110,13 @@ double leastLossOf(const BlockFromHistory& block) {
 
 // For a whole block: over all its pixels, estimated from two of them. Those in between may be worse.
 Loss lossOf(const HistoryView& view, const BlockFromHistory& block, const glm::ivec2& first) {
-    const double spread = kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
-    const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread), t = block.mean_move_px - glm::floor(block.mean_move_px);
+    const double spread =
+        kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
+    const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread),
+                     t = block.mean_move_px - glm::floor(block.mean_move_px);
     const glm::ivec2 corner = glm::ivec2(glm::floor(block.source_px)) - kHistoryBlock / 2;
-    const Loss one = lossAt(view, corner + glm::ivec2(1, 2), t, off_px), other = lossAt(view, corner + glm::ivec2(2, 5), t, off_px);
+    const Loss one = lossAt(view, corner + glm::ivec2(1, 2), t, off_px),
+               other = lossAt(view, corner + glm::ivec2(2, 5), t, off_px);
     const double pixels_each = 0.5 * kHistoryBlock.x * kHistoryBlock.y;
     return {std::max(pixels_each * (one.error + other.error), leastLossOf(block)),
             pixels_each * (one.squared_gradient + other.squared_gradient)};
@@ -112,7 +124,8 @@ Loss lossOf(const HistoryView& view, const BlockFromHistory& block, const glm::i
 
 class Warper {
 public:
-    Warper(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near)
+    Warper(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden,
+           const glm::dvec3& background, double near)
         : history_(history),
           hidden_(hidden),
           background_(background, 0.0),
@@ -126,7 +139,9 @@ public:
                            {},
                            {hidden.begin(), hidden.end()}};
         warped_.unseen.resize(pixels);
-        for (std::size_t t = 0; t < std::size_t{tiles_.x} * tiles_.y; ++t) { warped_.picture.tiles.push_back(tileBefore(t)); }
+        for (std::size_t t = 0; t < std::size_t{tiles_.x} * tiles_.y; ++t) {
+            warped_.picture.tiles.push_back(tileBefore(t));
+        }
     }
 
     WarpedHistory run() {
@@ -140,10 +155,12 @@ public:
 private:
     // The tile's cost and age are those of where its middle comes from.
     [[nodiscard]] HistoryTile tileBefore(std::size_t tile) const {
-        const glm::dvec2 middle_px = glm::min(glm::dvec2(tile % tiles_.x, tile / tiles_.x) * double{kTileSize} + 0.5 * kTileSize,
-                                              glm::dvec2(warped_.picture.eye.size_px));
+        const glm::dvec2 middle_px =
+            glm::min(glm::dvec2(tile % tiles_.x, tile / tiles_.x) * double{kTileSize} + 0.5 * kTileSize,
+                     glm::dvec2(warped_.picture.eye.size_px));
         const double guess = view_.look(view_.place(middle_px, 0.0).place_px).inverse_depth;
-        const glm::dvec2 from_px = glm::clamp(view_.place(middle_px, guess).place_px, glm::dvec2(0.0), glm::dvec2(view_.last));
+        const glm::dvec2 from_px =
+            glm::clamp(view_.place(middle_px, guess).place_px, glm::dvec2(0.0), glm::dvec2(view_.last));
         const HistoryTile& before = tileOf(history_, from_px);
         return {before.cost, before.age + 1, {}, {}, {}, before.lost};
     }
@@ -156,7 +173,8 @@ private:
     }
 
     void makeBlock(const glm::ivec2& first) {
-        const std::size_t tile_index = std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize);
+        const std::size_t tile_index =
+            std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize);
         if (!hidden_.empty() && hidden_[tile_index] != 0) { return warped_.one_by_one.push_back(0); }
         const BlockFromHistory block = findBlock(view_, first, near_);
         HistoryTile& tile = warped_.picture.tiles[tile_index];
@@ -166,9 +184,11 @@ private:
         if (view_.isInside(block.source_px)) {
             const std::size_t from = quarterOf(glm::ivec2(block.source_px));
             const HistoryTile& before = tileOf(history_, block.source_px);
-            const bool is_cut = first.x / kCell * kCell + kHistoryBlock.x >= static_cast<int>(warped_.picture.eye.size_px.x);
+            const bool is_cut =
+                first.x / kCell * kCell + kHistoryBlock.x >= static_cast<int>(warped_.picture.eye.size_px.x);
             const double share = is_cut ? 1.0 : static_cast<double>(kHistoryBlock.x) / kCell;
-            tile.errors[quarter] = std::hypot(tile.errors[quarter], std::sqrt(share) * std::min(before.errors[from], 1.0));
+            tile.errors[quarter] =
+                std::hypot(tile.errors[quarter], std::sqrt(share) * std::min(before.errors[from], 1.0));
             tile.growth[quarter] += share * std::min(before.growth[from], 1.0);
         }
         warped_.one_by_one.push_back(block.whole ? 0 : 1);
@@ -195,7 +215,8 @@ private:
         }
     }
     [[nodiscard]] std::size_t indexOf(const glm::ivec2& pixel) const {
-        return static_cast<std::size_t>(pixel.y) * warped_.picture.eye.size_px.x + static_cast<std::size_t>(pixel.x);
+        return static_cast<std::size_t>(pixel.y) * warped_.picture.eye.size_px.x +
+               static_cast<std::size_t>(pixel.x);
     }
     void put(const glm::ivec2& pixel, const MovingPixel& moving, const glm::dvec4& colour) {
         warped_.picture.rgba[indexOf(pixel)] = colour;
@@ -229,7 +250,8 @@ glm::dvec4 sampleSmoothly(const HistoryView& view, const glm::dvec2& place_px) {
 // The expected squared error of a pixel of a block. A signal that alternates in sign from pixel to pixel with
 // an amplitude d has fifth differences of 32 d, all of which is lost halfway between two pixels; to this is
 // added how the picture changes over the uncertainty of the place.
-Loss lossAt(const HistoryView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
+Loss lossAt(const HistoryView& view, const glm::ivec2& wanted, const glm::dvec2& t,
+            const glm::dvec2& off_px) {
     constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
     const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);
     glm::dvec3 across(0.0), down(0.0);
@@ -239,11 +261,12 @@ Loss lossAt(const HistoryView& view, const glm::ivec2& wanted, const glm::dvec2&
     }
     across *= 4.0 * t.x * (1.0 - t.x) / 32.0;
     down *= 4.0 * t.y * (1.0 - t.y) / 32.0;
-    const glm::dvec3 slope_across = 0.5 * glm::dvec3(view.colour(at.x + 1, at.y) - view.colour(at.x - 1, at.y));
+    const glm::dvec3 slope_across =
+        0.5 * glm::dvec3(view.colour(at.x + 1, at.y) - view.colour(at.x - 1, at.y));
     const glm::dvec3 slope_down = 0.5 * glm::dvec3(view.colour(at.x, at.y + 1) - view.colour(at.x, at.y - 1));
-    return {
-        squareOf(std::sqrt(glm::dot(across, across) + glm::dot(down, down)) + glm::length(off_px.x * slope_across + off_px.y * slope_down)),
-        glm::dot(slope_across, slope_across) + glm::dot(slope_down, slope_down)};
+    return {squareOf(std::sqrt(glm::dot(across, across) + glm::dot(down, down)) +
+                     glm::length(off_px.x * slope_across + off_px.y * slope_down)),
+            glm::dot(slope_across, slope_across) + glm::dot(slope_down, slope_down)};
 }
 
 std::array<double, 6> lagrangeWeights(double t) {
@@ -258,8 +281,8 @@ std::array<double, 6> lagrangeWeights(double t) {
     return weights;
 }
 
-WarpedHistory warpHistory(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background,
-                          double near) {
+WarpedHistory warpHistory(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden,
+                          const glm::dvec3& background, double near) {
     return Warper(history, eye, hidden, background, near).run();
 }
 

@@ -24,7 +24,8 @@ glm::dvec2 widthOfPixel(const HistoryView& view, const glm::dvec2& wanted_px) {
            std::abs(across.x * down.y - across.y * down.x);
 }
 
-Found search(const HistoryView& view, const glm::dvec2& wanted_px, double guess, const glm::dvec2& agrees_px) {
+Found search(const HistoryView& view, const glm::dvec2& wanted_px, double guess,
+             const glm::dvec2& agrees_px) {
     Found found{{std::nullopt, guess}, wanted_px};
     for (int step = 0; step < kSteps && !found.agrees; ++step) {
         const EyeChange::Moved place = view.place(wanted_px, found.seen.inverse_depth);
@@ -47,7 +48,9 @@ double frontAround(const HistoryView& view, const glm::dvec2& place_px) {
     double nearest = 0.0;
     for (int y = -kFrontReach; y <= kFrontReach; ++y) {
         for (int x = -kFrontReach; x <= kFrontReach; ++x) {
-            if (const auto pixel = view.own(middle + glm::ivec2(x, y))) { nearest = std::max(nearest, pixel->inverse_depth); }
+            if (const auto pixel = view.own(middle + glm::ivec2(x, y))) {
+                nearest = std::max(nearest, pixel->inverse_depth);
+            }
         }
     }
     return view.now_from_history.move(glm::dvec2(middle) + 0.5, nearest).inverse_depth;
@@ -55,8 +58,8 @@ double frontAround(const HistoryView& view, const glm::dvec2& place_px) {
 
 // Catmull and Rom's weights (1974) of the samples at -1, 0, 1, 2 for a place `t` after sample 0.
 std::array<double, 4> cubicWeights(double t) {
-    return {0.5 * (-t + 2 * t * t - t * t * t), 0.5 * (2 - 5 * t * t + 3 * t * t * t), 0.5 * (t + 4 * t * t - 3 * t * t * t),
-            0.5 * (-t * t + t * t * t)};
+    return {0.5 * (-t + 2 * t * t - t * t * t), 0.5 * (2 - 5 * t * t + 3 * t * t * t),
+            0.5 * (t + 4 * t * t - 3 * t * t * t), 0.5 * (-t * t + t * t * t)};
 }
 
 struct Sample {
@@ -80,14 +83,17 @@ Sample sampleAround(const HistoryView& view, const glm::dvec2& place_px) {
         lost_across += kThirdDifference[tap] * glm::dvec3(view.colour(base.x + i - 1, nearest.y));
         lost_down += kThirdDifference[tap] * glm::dvec3(view.colour(nearest.x, base.y + i - 1));
         for (int j = 0; j < 4; ++j) {
-            sample.colour += weights_x[tap] * weights_y[static_cast<std::size_t>(j)] * view.colour(base.x + i - 1, base.y + j - 1);
+            sample.colour += weights_x[tap] * weights_y[static_cast<std::size_t>(j)] *
+                             view.colour(base.x + i - 1, base.y + j - 1);
         }
     }
     lost_across *= 4.0 * t.x * (1.0 - t.x) / 8.0;
     lost_down *= 4.0 * t.y * (1.0 - t.y) / 8.0;
     sample.colour = glm::max(sample.colour, glm::dvec4(0.0));
-    sample.across = 0.5 * glm::dvec3(view.colour(nearest.x + 1, nearest.y) - view.colour(nearest.x - 1, nearest.y));
-    sample.down = 0.5 * glm::dvec3(view.colour(nearest.x, nearest.y + 1) - view.colour(nearest.x, nearest.y - 1));
+    sample.across =
+        0.5 * glm::dvec3(view.colour(nearest.x + 1, nearest.y) - view.colour(nearest.x - 1, nearest.y));
+    sample.down =
+        0.5 * glm::dvec3(view.colour(nearest.x, nearest.y + 1) - view.colour(nearest.x, nearest.y - 1));
     sample.lost = glm::dot(lost_across, lost_across) + glm::dot(lost_down, lost_down);
     return sample;
 }
@@ -98,8 +104,10 @@ PixelFromHistory makePixel(const HistoryView& view, const glm::dvec2& wanted_px,
     const glm::dvec2 disparity = glm::abs(view.history_from_now.disparity(wanted_px));
     const bool is_flat = std::max(disparity.x, disparity.y) * (near - far) <= kSameDepthPx;
     const glm::dvec2 agrees_px = kAgreesPx * glm::max(glm::dvec2(1.0), widthOfPixel(view, wanted_px));
-    const Found from_near = search(view, wanted_px, near, agrees_px), from_far = search(view, wanted_px, far, agrees_px);
-    const bool takes_near = from_near.agrees && (!from_far.agrees || from_near.seen.inverse_depth >= from_far.seen.inverse_depth);
+    const Found from_near = search(view, wanted_px, near, agrees_px),
+                from_far = search(view, wanted_px, far, agrees_px);
+    const bool takes_near =
+        from_near.agrees && (!from_far.agrees || from_near.seen.inverse_depth >= from_far.seen.inverse_depth);
     Found found = takes_near ? from_near : from_far;
     // A pixel that blends two depths moves with what is in front of it.
     if (found.agrees && !is_flat) {
@@ -121,17 +129,22 @@ PixelFromHistory makePixel(const HistoryView& view, const glm::dvec2& wanted_px,
         found.place_px = middle_px;
     }
     if (is_flat) {
-        const glm::dvec2 at = glm::clamp(found.place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5, base = glm::floor(at);
+        const glm::dvec2 at = glm::clamp(found.place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5,
+                         base = glm::floor(at);
         const Loss loss = lossAt(view, glm::ivec2(base), at - base, off_px);
-        return {
-            sampleSmoothly(view, at + 0.5), {found.seen.inverse_depth, code}, found.agrees, {loss.error + unseen, loss.squared_gradient}};
+        return {sampleSmoothly(view, at + 0.5),
+                {found.seen.inverse_depth, code},
+                found.agrees,
+                {loss.error + unseen, loss.squared_gradient}};
     }
     const Sample sample = sampleAround(view, found.place_px);
-    const double amplitude = std::sqrt(sample.lost) + glm::length(off_px.x * sample.across + off_px.y * sample.down);
+    const double amplitude =
+        std::sqrt(sample.lost) + glm::length(off_px.x * sample.across + off_px.y * sample.down);
     return {sample.colour,
             {found.seen.inverse_depth, code},
             found.agrees,
-            {squareOf(amplitude) + unseen, glm::dot(sample.across, sample.across) + glm::dot(sample.down, sample.down)}};
+            {squareOf(amplitude) + unseen,
+             glm::dot(sample.across, sample.across) + glm::dot(sample.down, sample.down)}};
 }
 
 }  // namespace binosplat::reference

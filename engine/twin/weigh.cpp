@@ -22,25 +22,29 @@ glm::uvec2 middleOf(std::size_t tile, glm::uvec2 size_px) {
 
 // The source tile from which the middle of a target tile comes, if it is as deep as what the source has
 // there.
-std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, std::size_t tile, const StereoSettings& settings) {
+std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, std::size_t tile,
+                       const StereoSettings& settings) {
     const glm::uvec2 size_px = dominant.size_px;
     const auto pixel = movingAtMiddle(dominant, tile, settings);
     const glm::dvec2 middle_px = glm::dvec2(middleOf(tile, size_px)) + 0.5;
     const auto moved = source_from_target.move(middle_px, pixel ? pixel->inverse_depth : 0.0);
     const bool somewhere = moved.in_front && !std::isnan(moved.place_px.x) && !std::isnan(moved.place_px.y);
-    const glm::dvec2 place = glm::clamp(somewhere ? moved.place_px : middle_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0);
+    const glm::dvec2 place =
+        glm::clamp(somewhere ? moved.place_px : middle_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0);
     const glm::uvec2 source = glm::uvec2(place) / unsigned{kTileSize};
     return std::size_t{source.y} * tileGrid(size_px).x + source.x;
 }
 
 }  // namespace
 
-std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile, const StereoSettings& settings) {
+std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile,
+                                          const StereoSettings& settings) {
     const glm::uvec2 middle = middleOf(tile, dominant.size_px);
     return movingPixel(dominant, std::size_t{middle.y} * dominant.size_px.x + middle.x, settings);
 }
 
-Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes, const StereoSettings& settings) {
+Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes,
+              const StereoSettings& settings) {
     const EyeChange source_from_target(eyes.source, eyes.target);
     Weighed weighed{markUnseen(eyes, settings.gap_px), {}, 0, 0, false};
     markHidden(weighed.kinds, settings);
@@ -61,7 +65,8 @@ Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_range
         }
     }
     // The savings must cover the part of the cost that does not depend on tiles, and the budget for patching.
-    const auto mending = static_cast<std::uint64_t>(settings.budget * static_cast<double>(weighed.picture_cost));
+    const auto mending =
+        static_cast<std::uint64_t>(settings.budget * static_cast<double>(weighed.picture_cost));
     weighed.moves = weighed.saved_cost > mending + settings.move_cost * shown / kMoveSharedPart;
     if (!weighed.moves) { std::ranges::replace(weighed.kinds, TileKind::kNone, TileKind::kCheap); }
     return weighed;
@@ -74,14 +79,16 @@ std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px) {
     const auto isSeen = [&](const glm::uvec2& pixel) {
         const auto moved = source_from_target.move(glm::dvec2(pixel) + 0.5, 0.0);
         const glm::dvec2 place = moved.place_px;
-        return moved.in_front && place.x >= -gap_px && place.y >= -gap_px && place.x <= limit.x && place.y <= limit.y;
+        return moved.in_front && place.x >= -gap_px && place.y >= -gap_px && place.x <= limit.x &&
+               place.y <= limit.y;
     };
     std::vector<TileKind> kinds;
     for (unsigned y = 0; y < tiles.y; ++y) {
         for (unsigned x = 0; x < tiles.x; ++x) {
             const glm::uvec2 first = glm::uvec2(x, y) * unsigned{kTileSize};
             const glm::uvec2 last = glm::min(first + unsigned{kTileSize}, size_px) - 1u;
-            const bool seen = isSeen(first) && isSeen(last) && isSeen({first.x, last.y}) && isSeen({last.x, first.y});
+            const bool seen =
+                isSeen(first) && isSeen(last) && isSeen({first.x, last.y}) && isSeen({last.x, first.y});
             kinds.push_back(seen ? TileKind::kNone : TileKind::kEdge);
         }
     }
@@ -100,9 +107,14 @@ void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const S
     const glm::uvec2 size_px = eyes.target.size_px, tiles = tileGrid(size_px);
     const auto isBehind = [&](const glm::uvec2& pixel) {
         const auto moved = source_from_target.move(glm::dvec2(pixel) + 0.5, 0.0);
-        const glm::dvec2 at = moved.place_px, limit = glm::dvec2(size_px) + static_cast<double>(settings.gap_px);
-        if (!moved.in_front || at.x < -settings.gap_px || at.y < -settings.gap_px || at.x > limit.x || at.y > limit.y) { return false; }
-        const glm::uvec2 source = glm::uvec2(glm::clamp(at, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0)) / unsigned{kTileSize};
+        const glm::dvec2 at = moved.place_px,
+                         limit = glm::dvec2(size_px) + static_cast<double>(settings.gap_px);
+        if (!moved.in_front || at.x < -settings.gap_px || at.y < -settings.gap_px || at.x > limit.x ||
+            at.y > limit.y) {
+            return false;
+        }
+        const glm::uvec2 source =
+            glm::uvec2(glm::clamp(at, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0)) / unsigned{kTileSize};
         return settings.source_hidden[source.y * tiles.x + source.x] != 0;
     };
     for (unsigned tile = 0; tile < tiles.x * tiles.y; ++tile) {

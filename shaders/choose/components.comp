@@ -17,7 +17,8 @@ layout(constant_id = 0) const uint kStep = kStepUnite;
 uint slotOf(uint pixel) { return pass.slots_apart * pixel; }
 
 bool isHole(WarpView warp, uvec2 at) {
-    return ((pass.pixel_classes.at[at.y * warp.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3) == kHole;
+    return ((pass.pixel_classes.at[at.y * warp.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) &
+            3) == kHole;
 }
 
 // Other threads change parents meanwhile; every value that can be read leads to the same root.
@@ -59,7 +60,9 @@ void markTiles(WarpView warp, uvec2 low, uvec2 high, uint first, uint stride) {
     const uvec2 size = end - begin;
     for (uint i = first; i < size.x * size.y; i += stride) {
         const uint tile = (begin.y + i / size.x) * warp.size_tiles.x + begin.x + i % size.x;
-        if (atomicCompSwap(pass.tile_kinds.at[tile], 0, kTileCenter) == 0) { atomicAdd(pass.counters.at[0].center_tiles, 1); }
+        if (atomicCompSwap(pass.tile_kinds.at[tile], 0, kTileCenter) == 0) {
+            atomicAdd(pass.counters.at[0].center_tiles, 1);
+        }
     }
 }
 
@@ -70,7 +73,8 @@ void main() {
         const uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
         for (uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; b < boxes; b += groups) {
             const PixelBox box = pass.boxes.at[b];
-            markTiles(warp, uvec2(box.x0, box.y0), uvec2(box.x1, box.y1), gl_LocalInvocationIndex, kWarpGroup);
+            markTiles(warp, uvec2(box.x0, box.y0), uvec2(box.x1, box.y1), gl_LocalInvocationIndex,
+                      kWarpGroup);
         }
         return;
     }
@@ -89,7 +93,9 @@ void main() {
         if (parentOf(pixel) == pixel) {
             const uint component = atomicAdd(pass.counters.at[0].components, 1);
             pass.pixels.at[slotOf(pixel)].component = component;
-            if (component < pass.box_capacity) { pass.boxes.at[component] = PixelBox(0xffffffffu, 0xffffffffu, 0, 0); }
+            if (component < pass.box_capacity) {
+                pass.boxes.at[component] = PixelBox(0xffffffffu, 0xffffffffu, 0, 0);
+            }
         }
     } else {
         if (haveBoxes()) {

@@ -18,7 +18,8 @@ shared uint group_bins[kDepthBins];
 void count(uvec2 pixel, uvec2 size_px, uint row_words) {
     const uint moving = pass.moving.at[pixel.y * row_words + pixel.x];
     if (moving != 0 && colourAt(pass.colours, pass.half_colours, pixel.y * size_px.x + pixel.x).w > 0.5) {
-        atomicAdd(group_bins[uint(clamp((16 - log2(inverseDepthOf(moving))) * 32, 0, float(kDepthBins - 1)))], 1);
+        atomicAdd(group_bins[uint(clamp((16 - log2(inverseDepthOf(moving))) * 32, 0, float(kDepthBins - 1)))],
+                  1);
     }
 }
 
@@ -30,7 +31,9 @@ void main() {
     const uvec2 first = gl_WorkGroupID.xy * uvec2(kBoundsTiles * kTileSize, kTileSize);
     const uvec2 end = min(first + uvec2(kBoundsTiles * kTileSize, kTileSize), size_px);
     for (uint y = first.y; y < end.y; y += 2) {
-        for (uint x = first.x + gl_LocalInvocationIndex; x < end.x; x += kWarpGroup) { count(uvec2(x, y), size_px, row_words); }
+        for (uint x = first.x + gl_LocalInvocationIndex; x < end.x; x += kWarpGroup) {
+            count(uvec2(x, y), size_px, row_words);
+        }
     }
     barrier();
     for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kWarpGroup) {

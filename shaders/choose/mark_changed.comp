@@ -19,10 +19,15 @@ void main() {
         const uvec2 begin_px = pass.rects.at[i].begin_px, end_px = pass.rects.at[i].end_px;
         [[unroll]] for (uint q = 0; q < 4; ++q) {
             const uvec2 quarter_px = tile_px + kCellSize * uvec2(q & 1, q >> 1);
-            const bool meets = all(lessThan(quarter_px, end_px)) && all(lessThan(begin_px, quarter_px + kCellSize));
+            const bool meets =
+                all(lessThan(quarter_px, end_px)) && all(lessThan(begin_px, quarter_px + kCellSize));
             more[q] += meets ? pass.rects.at[i].error : 0;
         }
         ++i;
-    } while (i < pass.count);
-    if (more != vec4(0)) { pass.tiles.at[tile].errors = min(pass.tiles.at[tile].errors + more, vec4(kMostChangedError)); }
+    }
+    while (i < pass.count)
+        ;
+    if (more != vec4(0)) {
+        pass.tiles.at[tile].errors = min(pass.tiles.at[tile].errors + more, vec4(kMostChangedError));
+    }
 }

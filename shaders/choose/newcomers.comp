@@ -39,7 +39,8 @@ const float kMostStepsOfOne = 2147483520.0;
 bool standsInFront(WarpView warp, vec2 pixel_px, float inverse_depth) {
     const uint tile = tileOf(warp.size_tiles, pixelAt(warp.size_px, pixel_px));
     const uint moving = pass.tile_depths.at[tile];
-    return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
+    return pass.tile_kinds.at[tile] != 0 || moving == 0 ||
+           inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }
 
 // By exchange, since many threads that each checked before adding could still exceed kMostSteps together.
@@ -55,7 +56,8 @@ void addError(uint tile, uint steps) {
 // `together`, which share its rows.
 // False if it is large, so that one thread alone must leave it.
 bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
-    const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
+    const CameraSplat splat =
+        loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, pass.is_dimmed != 0, has_reference);
     const Outline outline = outlineOfProjected(p, eye.low_pass);
@@ -70,11 +72,15 @@ bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen, plus
     // that of the low-pass.
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
-    const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / eye.low_pass + p.inverse_depth * p.inverse_depth / jacobian);
-    const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
+    const float area_px =
+        3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian
+                                           : 1 / eye.low_pass + p.inverse_depth * p.inverse_depth / jacobian);
+    const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize))
+                                       : float(kTileSize * kTileSize);
     const float error = warp.newcomer_error * exp2(-negativeLog2Opacity(p));  // after dimming, if any
     const uint steps = uint(min(error * error * pixels * kErrorSteps, kMostStepsOfOne));
-    const int first = together ? int(gl_LocalInvocationIndex) : 0, rows_apart = together ? int(kWarpGroup) : 1;
+    const int first = together ? int(gl_LocalInvocationIndex) : 0,
+              rows_apart = together ? int(kWarpGroup) : 1;
     for (int row = box.y + first; row < box.w; row += rows_apart) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
         for (int x = in_row.x; x < in_row.y; ++x) {
@@ -97,7 +103,9 @@ void main() {
     barrier();
     for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kWarpGroup) {
         const uint rank = begin + in_block;
-        if (rank < count && pass.source_counts.at[rank] == 0) { unseen_ranks[atomicAdd(unseen_count, 1)] = rank; }
+        if (rank < count && pass.source_counts.at[rank] == 0) {
+            unseen_ranks[atomicAdd(unseen_count, 1)] = rank;
+        }
     }
     barrier();
     const EyeView eye = pass.eyes.at[pass.eye];
@@ -105,7 +113,8 @@ void main() {
     [[dont_unroll]] for (uint round = 0; round < 2; ++round) {
         const bool together = round == 1;
         const uint end = together && large_count == 0 ? 0 : unseen_count;
-        for (uint unseen = together ? 0 : gl_LocalInvocationIndex; unseen < end; unseen += together ? 1 : kWarpGroup) {
+        for (uint unseen = together ? 0 : gl_LocalInvocationIndex; unseen < end;
+             unseen += together ? 1 : kWarpGroup) {
             const uint rank = unseen_ranks[unseen];
             if (rank == kDone) { continue; }
             if (addNewcomer(rank, eye, warp, together)) {

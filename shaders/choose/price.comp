@@ -14,7 +14,8 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
-layout(constant_id = 1) const bool kHistory = false;  // errors are those that the history has left in its tiles
+layout(constant_id = 1) const
+    bool kHistory = false;  // errors are those that the history has left in its tiles
 #include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
@@ -24,7 +25,9 @@ const uint kBinsPerThread = kPriceBins / kWarpGroup;
 const float kMaskingGradient = 0.05, kUnmaskedBound = 0.6;
 
 // 16 bins per octave, the greatest quotients last: exponent and four bits of the mantissa.
-uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kNewBin - 1); }
+uint binOf(float error_per_pair) {
+    return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kNewBin - 1);
+}
 
 // What rendering a tile is worth in a picture that is made from a history: its expected squared error, times
 // the frames that it has waited. Mending an error that grows with each frame saves the area under its growth
@@ -39,9 +42,11 @@ uint errorOfHistory(HistoryTile tile) {
 HistoryTile withGrowth(HistoryTile tile) {
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         // The amplitude per pixel and channel.
-        const float grown =
-            unseenIn(tile.unseen, q) >= kNewPixels ? kNewError : sqrt(float(tile.grown[q]) / (kErrorSteps * 3 * kCellSize * kCellSize));
-        tile.errors[q] += mix(grown, tile.growth[q], kMeasuredShare * float(tile.growth[q] > 0 && grown < kUnseenGrowth ? 1 : 0));
+        const float grown = unseenIn(tile.unseen, q) >= kNewPixels
+                                ? kNewError
+                                : sqrt(float(tile.grown[q]) / (kErrorSteps * 3 * kCellSize * kCellSize));
+        tile.errors[q] += mix(grown, tile.growth[q],
+                              kMeasuredShare * float(tile.growth[q] > 0 && grown < kUnseenGrowth ? 1 : 0));
     }
     return tile;
 }
@@ -122,7 +127,8 @@ void findLastBin(float share, uint picture_cost) {
     if (kHistory && FIRST.warp.error_bound > 0) {
         uint over;
         scanGroup(first >= kOverBin ? own : 0, over);
-        wanted = max(min(wanted, float(over) + kWithinBound * float(picture_cost)), float(pass.price_bins.at[kNewBin]));
+        wanted = max(min(wanted, float(over) + kWithinBound * float(picture_cost)),
+                     float(pass.price_bins.at[kNewBin]));
         wanted = min(wanted, float(pass.most_cost));
     }
     const uint budget = wanted < 4e9 ? uint(wanted) : 4000000000u;
@@ -142,7 +148,10 @@ void findLastBin(float share, uint picture_cost) {
 void main() [[subgroup_uniform_control_flow]] {
     const uvec2 size_tiles = TARGET.warp.size_tiles;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
-    if (tile < size_tiles.x * size_tiles.y) { Uints(TARGET.tile_prices).at[tile] = priceOf(tile, size_tiles); }
+    if (tile < size_tiles.x * size_tiles.y) {
+        Uints(TARGET.tile_prices).at[tile] = priceOf(tile, size_tiles);
+    }
     if (!isLastGroup(pass.chosen)) { return; }
-    findLastBin(FIRST.warp.budget, kHistory ? atomicOr(FIRST.warp_counters.picture_cost, 0) : FIRST.warp_counters.picture_cost);
+    findLastBin(FIRST.warp.budget,
+                kHistory ? atomicOr(FIRST.warp_counters.picture_cost, 0) : FIRST.warp_counters.picture_cost);
 }

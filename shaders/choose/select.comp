@@ -28,9 +28,13 @@ struct End {
 // True if the tile may use what is left of the budget in the last bin. A tile that the list counted in a
 // higher bin, as if its error were seen whole (price), had its turn there, unless the budget is enough for
 // all.
-bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
+bool isOfLast(uint price, End end) {
+    return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu);
+}
 
-uint tilesOf(uint target) { return pass.targets.at[target].warp.size_tiles.x * pass.targets.at[target].warp.size_tiles.y; }
+uint tilesOf(uint target) {
+    return pass.targets.at[target].warp.size_tiles.x * pass.targets.at[target].warp.size_tiles.y;
+}
 
 // The cost of the last bin's tiles before this workgroup's, starting with those of earlier targets;
 // `first_tile` is a multiple of its size.
@@ -44,7 +48,9 @@ uint costBefore(uint first_tile, End end) {
             [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
                 prices[i] = tile + i * kWarpGroup < tiles ? tile_prices.at[tile + i * kWarpGroup] : 0;
             }
-            [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i], end) ? prices[i] & kMaxTileCost : 0; }
+            [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
+                own += isOfLast(prices[i], end) ? prices[i] & kMaxTileCost : 0;
+            }
         }
     }
     uint total;
@@ -90,9 +96,13 @@ void main() [[subgroup_uniform_control_flow]] {
     const uvec4 lanes = subgroupBallot(selected);
     const uint count = subgroupBallotBitCount(lanes);
     const uint cost = kPredicted ? subgroupAdd(selected ? Uints(TARGET.tile_costs).at[tile] : 0) : 0;
-    const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0), cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
-    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0), waiting = kHistory ? subgroupAdd(waits ? 1 : 0) : 0;
-    if (kHistory && waiting > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.waiting_tiles, waiting); }
+    const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0),
+               cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
+    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0),
+               waiting = kHistory ? subgroupAdd(waits ? 1 : 0) : 0;
+    if (kHistory && waiting > 0 && subgroupElect()) {
+        atomicAdd(TARGET.warp_counters.waiting_tiles, waiting);
+    }
     const uint left = kHistory ? subgroupAdd(kind == 0 ? squaresOf(tile) : 0) : 0;
     if (kHistory && left > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.left_squares, left); }
     uint place = 0;
@@ -114,7 +124,8 @@ void main() [[subgroup_uniform_control_flow]] {
     if (!isLastGroup(pass.chosen) || gl_LocalInvocationIndex != 0) { return; }
     uint most = 0;
     for (uint target = 0; target < gl_NumWorkGroups.z; ++target) {
-        const uint listed = atomicOr(pass.targets.at[target].chosen_tiles.needed, 0), visible = listed > 0 ? pass.visible.at[0].count : 0;
+        const uint listed = atomicOr(pass.targets.at[target].chosen_tiles.needed, 0),
+                   visible = listed > 0 ? pass.visible.at[0].count : 0;
         pass.targets.at[target].chosen_tiles = makeList(listed, tilesOf(target));
         pass.targets.at[target].chosen_visible = makeList(visible, visible);
         most = max(most, listed);

@@ -30,10 +30,12 @@ uvec2 middleOf(WarpView warp, uint tile) {
 // Pairs of the source tile from which this pixel comes, assuming the depth that the source sees there.
 uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
-    const vec3 moved = movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
+    const vec3 moved =
+        movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
     // NaN stays where it is
     const bool sane = isPositive(moved.z) && isPositive(1e9 - abs(moved.x)) && isPositive(1e9 - abs(moved.y));
-    const uvec2 range = pass.ranges.at[tileOf(warp.size_tiles, pixelAt(warp.size_px, sane ? moved.xy : middle_px))];
+    const uvec2 range =
+        pass.ranges.at[tileOf(warp.size_tiles, pixelAt(warp.size_px, sane ? moved.xy : middle_px))];
     return range.y - range.x;
 }
 
@@ -64,7 +66,8 @@ void main() [[subgroup_uniform_control_flow]] {
         if (!hidden) {
             const uvec2 middle = middleOf(warp, tile);
             const uint moving = mayMove() ? pass.moving.at[middle.y * warp.row_words + middle.x] : 0;
-            const uint pairs = mayMove() ? pairsNear(warp, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
+            const uint pairs =
+                mayMove() ? pairsNear(warp, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
             const bool unseen = isUnseen(warp, pass.shown_mask, tile, true);
             cost = min(pairs, kMaxTileCost - kTilePairs) + kTilePairs;
             moves = !unseen && pairs > warp.move_cost;
@@ -76,10 +79,13 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.tile_errors.at[tile] = 0;
     }
     const uint threads = gl_NumWorkGroups.x * kWarpGroup;
-    for (uint i = tile; i < maskWords(warp.size_tiles) * warp.size_tiles.y; i += threads) { pass.tile_mask.at[i] = 0; }
+    for (uint i = tile; i < maskWords(warp.size_tiles) * warp.size_tiles.y; i += threads) {
+        pass.tile_mask.at[i] = 0;
+    }
     for (uint i = tile; i < kPriceBins; i += threads) { pass.price_bins.at[i] = 0; }
 
-    const uint group_cost = subgroupAdd(cost), group_saved = subgroupAdd(saved), group_moved = subgroupAdd(moves ? 1 : 0), group_shown = subgroupAdd(cost > 0 ? 1 : 0);
+    const uint group_cost = subgroupAdd(cost), group_saved = subgroupAdd(saved),
+               group_moved = subgroupAdd(moves ? 1 : 0), group_shown = subgroupAdd(cost > 0 ? 1 : 0);
     if (subgroupElect()) {
         atomicAdd(pass.counters.at[0].picture_cost, group_cost);
         atomicAdd(pass.counters.at[0].saved_cost, group_saved);
@@ -87,7 +93,8 @@ void main() [[subgroup_uniform_control_flow]] {
         atomicAdd(pass.counters.at[0].shown_tiles, group_shown);
     }
     if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
-    const uint shown = atomicOr(pass.counters.at[0].shown_tiles, 0), all_saved = atomicOr(pass.counters.at[0].saved_cost, 0);
+    const uint shown = atomicOr(pass.counters.at[0].shown_tiles, 0),
+               all_saved = atomicOr(pass.counters.at[0].saved_cost, 0);
     const uint picture_cost = atomicOr(pass.counters.at[0].picture_cost, 0);
     const DispatchSize rows = DispatchSize((warp.size_px.y + warp.rows_apart - 1) / warp.rows_apart, 1, 1);
     const bool pays = movingPays(warp, all_saved, picture_cost, shown);

@@ -2,7 +2,9 @@
 // kInPages its visible pages (see cull_pages). Needs `pass` to be a CullPass or a CompactPass, and
 // lib/list.glsl.
 
-uint blockCount() { return kInPages ? pass.visible_pages.at[0].count : groupsOver(pass.splat_count, kCullBlock); }
+uint blockCount() {
+    return kInPages ? pass.visible_pages.at[0].count : groupsOver(pass.splat_count, kCullBlock);
+}
 
 // The page of a block in the list. If there are many pages, each run is listed where all of its pages would
 // be, followed by the numbers of visible pages before each run (cull_pages).

@@ -8,7 +8,9 @@ shared uint most_pairs;                   // in a cell's tile
 
 const int kLastSample = int(kCellSize) - 1, kHalfTile = int(kTileSize) / 2;
 
-uint slotOf(uint cell, ivec2 at) { return (cell & 1) * kCellSize * kCellSize + uint(at.y) * kCellSize + uint(at.x); }
+uint slotOf(uint cell, ivec2 at) {
+    return (cell & 1) * kCellSize * kCellSize + uint(at.y) * kCellSize + uint(at.x);
+}
 
 // The sample's depth: D / A.
 void putSample(uint cell, ivec2 at, vec4 colour, float depth, uint word) {
@@ -42,11 +44,13 @@ float detailAt(uint cell, ivec2 at) {
     const vec3 here = sampleAt(cell, at).rgb;
     float squares = 0;
     if (at.x > 0 && at.x < kLastSample) {
-        const vec3 across = sampleAt(cell, at - ivec2(1, 0)).rgb - 2 * here + sampleAt(cell, at + ivec2(1, 0)).rgb;
+        const vec3 across =
+            sampleAt(cell, at - ivec2(1, 0)).rgb - 2 * here + sampleAt(cell, at + ivec2(1, 0)).rgb;
         squares += dot(across, across);
     }
     if (at.y > 0 && at.y < kLastSample) {
-        const vec3 down = sampleAt(cell, at - ivec2(0, 1)).rgb - 2 * here + sampleAt(cell, at + ivec2(0, 1)).rgb;
+        const vec3 down =
+            sampleAt(cell, at - ivec2(0, 1)).rgb - 2 * here + sampleAt(cell, at + ivec2(0, 1)).rgb;
         squares += dot(down, down);
     }
     return min(squares * (float(kCellSize) / float(kCellSize - 2)), kMaxPixelError);
@@ -58,7 +62,8 @@ vec4 cubicAt(int pixel, out int first) {
     const float place = float(pixel) / kSamplesApart;
     const int before = int(place);
     const float t = place - float(before);
-    const vec4 w = vec4(t * (t * (1 - 0.5 * t) - 0.5), 1 + t * t * (1.5 * t - 2.5), t * (0.5 + t * (2 - 1.5 * t)), t * t * (0.5 * t - 0.5));
+    const vec4 w = vec4(t * (t * (1 - 0.5 * t) - 0.5), 1 + t * t * (1.5 * t - 2.5),
+                        t * (0.5 + t * (2 - 1.5 * t)), t * t * (0.5 * t - 0.5));
     first = max(before - 1, 0);
     return before == 0 ? vec4(w.y + 3 * w.x, w.z - 3 * w.x, w.w + w.x, 0) : w;
 }
@@ -81,7 +86,9 @@ void readRow(inout Column column) {
     const int y = mirrored(column.rows_read, kLastSample, column.is_lower);
     vec4 sum = vec4(0);
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        sum += column.across[i] * sampleAt(column.cell, ivec2(mirrored(column.first_sample + i, kLastSample, column.is_right), y));
+        sum +=
+            column.across[i] *
+            sampleAt(column.cell, ivec2(mirrored(column.first_sample + i, kLastSample, column.is_right), y));
     }
     [[unroll]] for (int i = 0; i < 3; ++i) { column.rows[i] = column.rows[i + 1]; }
     column.rows[3] = sum;
@@ -105,6 +112,8 @@ vec4 fillPixel(inout Column column, int p) {
     int first;
     const vec4 down = cubicAt(p, first);
     if (first + 4 > column.rows_read) { readRow(column); }
-    const vec4 held = max(down.x * column.rows[0] + down.y * column.rows[1] + down.z * column.rows[2] + down.w * column.rows[3], vec4(0));
+    const vec4 held = max(
+        down.x * column.rows[0] + down.y * column.rows[1] + down.z * column.rows[2] + down.w * column.rows[3],
+        vec4(0));
     return vec4(held.rgb, min(held.a, 1));
 }

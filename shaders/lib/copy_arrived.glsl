@@ -22,7 +22,8 @@ struct Copied {
 // picture's border there is only one end. A row that nothing reached shows what is infinitely far.
 Copied copyArrived(WarpView warp, uint row, uvec2 at) {
     const bool here = arrivalAt(row, at.x) != 0;
-    const int left = here ? int(at.x) : arrivedBefore(at.x), right = here ? int(at.x) : arrivedAfter(at.x, warp.size_px.x);
+    const int left = here ? int(at.x) : arrivedBefore(at.x),
+              right = here ? int(at.x) : arrivedAfter(at.x, warp.size_px.x);
     if (left < 0 && right < 0) {
         const vec2 place_px = movePixel(warp.source_from_target, vec2(at) + 0.5, 0).xy;
         const uvec2 source = pixelAt(warp.size_px, place_px);
@@ -31,6 +32,10 @@ Copied copyArrived(WarpView warp, uint row, uvec2 at) {
     const uint first = uint(left >= 0 ? left : right), last = uint(right >= 0 ? right : left);
     const float share = first == last ? 0 : float(at.x - first) / float(last - first);
     const bool inside = left >= 0 && right >= 0 && last - first - 1 <= warp.gap_px;
-    return Copied(mix(arrivedColour(warp, row, uvec2(first, at.y)), arrivedColour(warp, row, uvec2(last, at.y)), share),
-                  here ? kCovered : inside ? kGap : kHole, mix(inverseDepthOf(arrivalAt(row, first)), inverseDepthOf(arrivalAt(row, last)), share));
+    return Copied(
+        mix(arrivedColour(warp, row, uvec2(first, at.y)), arrivedColour(warp, row, uvec2(last, at.y)), share),
+        here     ? kCovered
+        : inside ? kGap
+                 : kHole,
+        mix(inverseDepthOf(arrivalAt(row, first)), inverseDepthOf(arrivalAt(row, last)), share));
 }

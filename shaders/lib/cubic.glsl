@@ -2,7 +2,8 @@
 
 // Weights of the samples at -1, 0, 1, 2 for a place `t` after sample 0. At t = 0 they are exactly 0, 1, 0, 0.
 vec4 cubicWeights(float t) {
-    return 0.5 * vec4(t * (-1 + t * (2 - t)), 2 + t * t * (-5 + 3 * t), t * (1 + t * (4 - 3 * t)), t * t * (t - 1));
+    return 0.5 *
+           vec4(t * (-1 + t * (2 - t)), 2 + t * t * (-5 + 3 * t), t * (1 + t * (4 - 3 * t)), t * t * (t - 1));
 }
 
 // A colour; how the picture changes from pixel to pixel along the disparity, at the pixel that contains the
@@ -24,10 +25,14 @@ Sample sampleInRow(float place_px, uint row, int width) {
     const float t = from_first - float(base);
     const vec4 weights = cubicWeights(t);
     vec4 taps[4];
-    [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = sourceAt(row + uint(clamp(base + x - 1, 0, width - 1))); }
+    [[unroll]] for (int x = 0; x < 4; ++x) {
+        taps[x] = sourceAt(row + uint(clamp(base + x - 1, 0, width - 1)));
+    }
     const vec4 colour = weights.x * taps[0] + weights.y * taps[1] + weights.z * taps[2] + weights.w * taps[3];
     const vec3 lost = lostBetween(t, taps[3].rgb - taps[0].rgb + 3 * (taps[1].rgb - taps[2].rgb));
-    return Sample(max(colour, vec4(0)), 0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb), dot(lost, lost), 0);
+    return Sample(max(colour, vec4(0)),
+                  0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb), dot(lost, lost),
+                  0);
 }
 
 Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
@@ -41,8 +46,11 @@ Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
     [[unroll]] for (int y = 0; y < 4; ++y) {
         const int row = clamp(base.y + y - 1, 0, size.y - 1) * size.x;
         vec4 taps[4];
-        [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = sourceAt(uint(row + clamp(base.x + x - 1, 0, size.x - 1))); }
-        sum += weights_y[y] * (weights_x.x * taps[0] + weights_x.y * taps[1] + weights_x.z * taps[2] + weights_x.w * taps[3]);
+        [[unroll]] for (int x = 0; x < 4; ++x) {
+            taps[x] = sourceAt(uint(row + clamp(base.x + x - 1, 0, size.x - 1)));
+        }
+        sum += weights_y[y] * (weights_x.x * taps[0] + weights_x.y * taps[1] + weights_x.z * taps[2] +
+                               weights_x.w * taps[3]);
         if (y == 1 && first_row || y == 2 && !first_row) {
             across = 0.5 * (first_column ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb);
             lost_across = lostBetween(t.x, taps[3].rgb - taps[0].rgb + 3 * (taps[1].rgb - taps[2].rgb));
@@ -53,6 +61,7 @@ Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
         third_down += (y == 0 ? -1.0 : y == 1 ? 3.0 : y == 2 ? -3.0 : 1.0) * middle;
     }
     const vec3 lost_down = lostBetween(t.y, third_down);
-    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down),
+    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down,
+                  dot(lost_across, lost_across) + dot(lost_down, lost_down),
                   dot(across, across) + dot(down, down));
 }

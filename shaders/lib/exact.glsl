@@ -24,7 +24,8 @@ vec2 exactProduct(float a, float b) {
     const float b_high = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
     precise const float a_low = a - a_high, b_low = b - b_high;
     precise const float product = a * b;
-    precise const float error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    precise const float error =
+        ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
     return vec2(product, error);
 }
 
@@ -49,5 +50,6 @@ vec2 divideExact(vec2 a, vec2 b) {
 }
 
 vec2 dotExact(vec3 a, vec3 a_low, vec2 x, vec2 y, vec2 z) {
-    return addExact(addExact(multiplyExact(vec2(a.x, a_low.x), x), multiplyExact(vec2(a.y, a_low.y), y)), multiplyExact(vec2(a.z, a_low.z), z));
+    return addExact(addExact(multiplyExact(vec2(a.x, a_low.x), x), multiplyExact(vec2(a.y, a_low.y), y)),
+                    multiplyExact(vec2(a.z, a_low.z), z));
 }

@@ -9,7 +9,9 @@ void widenBy(inout vec4 bounds, EyeView eye, vec3 p, float slack) {
     bounds = vec4(min(bounds.xy, pixel - slack_px), max(bounds.zw, pixel + slack_px));
 }
 
-vec3 pointOf(CameraSplat splat, vec2 uv) { return uv.x * splat.scale.x * splat.t_u + uv.y * splat.scale.y * splat.t_v + splat.centre; }
+vec3 pointOf(CameraSplat splat, vec2 uv) {
+    return uv.x * splat.scale.x * splat.t_u + uv.y * splat.scale.y * splat.t_v + splat.centre;
+}
 
 // A point of the outline, if it is not nearer than the near plane.
 void widen(inout vec4 bounds, CameraSplat splat, EyeView eye, vec2 uv, float slack) {
@@ -19,7 +21,8 @@ void widen(inout vec4 bounds, CameraSplat splat, EyeView eye, vec2 uv, float sla
 
 // Both points of the outline where its tangent on the screen is parallel to an axis; `along` is that axis's
 // row of (a, b, c).
-void widenByTangents(inout vec4 bounds, CameraSplat splat, EyeView eye, float radius, vec3 along, float slack) {
+void widenByTangents(inout vec4 bounds, CameraSplat splat, EyeView eye, float radius, vec3 along,
+                     float slack) {
     const vec3 w = vec3(splat.scale.x * splat.t_u.z, splat.scale.y * splat.t_v.z, splat.centre.z);
     const vec3 form = vec3(radius * radius, radius * radius, -1);
     // along - x w is tangent to the dual conic: (w.w) x^2 - 2 (along.w) x + along.along = 0 in that form.

@@ -28,12 +28,14 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec2 slope = clamp(splat.centre.xy / splat.centre.z, low, high);
     const vec2 px_per_unit = eye.focal_px / splat.centre.z;
     const vec3 t_w = cross(splat.t_u, splat.t_v);
-    const vec3 scales = min(vec3(splat.scale, splat.thickness), kMaxSigma / max(px_per_unit.x, px_per_unit.y));
+    const vec3 scales =
+        min(vec3(splat.scale, splat.thickness), kMaxSigma / max(px_per_unit.x, px_per_unit.y));
     const vec2 u = scales.x * px_per_unit * (splat.t_u.xy - slope * splat.t_u.z);
     const vec2 v = scales.y * px_per_unit * (splat.t_v.xy - slope * splat.t_v.z);
     const vec2 w = scales.z * px_per_unit * (t_w.xy - slope * t_w.z);
     // The area that two axes span, seen along the line of sight: u x v and the like.
-    const vec3 along = vec3(dot(splat.t_u, vec3(slope, 1)), dot(splat.t_v, vec3(slope, 1)), dot(t_w, vec3(slope, 1)));
+    const vec3 along =
+        vec3(dot(splat.t_u, vec3(slope, 1)), dot(splat.t_v, vec3(slope, 1)), dot(t_w, vec3(slope, 1)));
     const vec3 areas = vec3(scales.y * px_per_unit.x, scales.x * px_per_unit.x, scales.x * px_per_unit.x) *
                        (vec3(scales.z, scales.z, scales.y) * px_per_unit.y) * along;
     ScreenGaussian g;
@@ -68,7 +70,8 @@ ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out 
     // covariance with the place on the screen over the variance of the place, Sigma2. The low-pass keeps it
     // finite for a sheet seen edge-on.
     const float along_u = p.plane_from_pixel.x * g.with_depth.x + p.plane_from_pixel.y * g.with_depth.y;
-    p.perspective = along_u * p.plane_from_pixel.xy + vec2(0, p.plane_from_pixel.z * p.plane_from_pixel.z * g.with_depth.y);
+    p.perspective = along_u * p.plane_from_pixel.xy +
+                    vec2(0, p.plane_from_pixel.z * p.plane_from_pixel.z * g.with_depth.y);
     p.opacity = packOpacity(dimmed ? dimmedOpacity(splat.opacity, g) : splat.opacity, has_reference);
     p.colour = uvec2(0);
     return p;

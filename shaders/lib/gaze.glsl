@@ -7,7 +7,9 @@ float angleFromGaze(EyeGaze gaze, vec2 px) {
 
 vec2 middleOfTile(uvec2 tile) { return vec2(tile * kTileSize + kTileSize / 2); }
 
-float finestCycle(EyeGaze gaze, float angle) { return kFovealCycle + kCyclePerAngle * max(angle - gaze.clear_rad, 0); }
+float finestCycle(EyeGaze gaze, float angle) {
+    return kFovealCycle + kCyclePerAngle * max(angle - gaze.clear_rad, 0);
+}
 
 // The finest cycle that an eye resolves grows linearly with the angle from its gaze (Guenter et al. 2012). A
 // picture has cycles of two pixels and longer; the eye sees the share of these that are no finer than what it
@@ -22,6 +24,7 @@ float seenShare(EyeGaze gaze, uvec2 tile) {
 float seenShareThere(EyeGaze gaze, uvec2 tile) {
     const vec2 px = middleOfTile(tile);
     const float stretch = length(vec3((px - gaze.principal_px) / gaze.focal_px, 1));
-    const float solid_angle = 1 / (gaze.focal_px.x * gaze.focal_px.y * stretch * stretch * stretch), finest = finestCycle(gaze, angleFromGaze(gaze, px));
+    const float solid_angle = 1 / (gaze.focal_px.x * gaze.focal_px.y * stretch * stretch * stretch),
+                finest = finestCycle(gaze, angleFromGaze(gaze, px));
     return min(4 * solid_angle / (finest * finest), 1);
 }

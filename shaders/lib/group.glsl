@@ -54,7 +54,9 @@ uint scanGroup(uint value, out uint total) {
             if (s < gl_NumSubgroups) { subgroup_sums[s] = carry + before; }
             carry += of_all;
             first += lanes;
-        } while (first < gl_NumSubgroups);
+        }
+        while (first < gl_NumSubgroups)
+            ;
         if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
     barrier();
@@ -80,7 +82,9 @@ uint scanGroupMax(uint value, out uint greatest) {
             if (s < gl_NumSubgroups) { subgroup_sums[s] = max(carry, before); }
             carry = max(carry, of_all);
             first += lanes;
-        } while (first < gl_NumSubgroups);
+        }
+        while (first < gl_NumSubgroups)
+            ;
         if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
     barrier();

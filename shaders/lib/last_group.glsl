@@ -45,7 +45,8 @@ bool isLastOfRun(ListStates list, uint run, uint groups, uint bits) {
     if (gl_LocalInvocationIndex == 0) {
         memoryBarrierBuffer();
         const uint in_word = 32 / bits, word = run / in_word, shift = bits * (run % in_word);
-        const uint before = atomicAdd(list.at[0].run_groups_done[word], 1u << shift) >> shift & ((1u << bits) - 1);
+        const uint before =
+            atomicAdd(list.at[0].run_groups_done[word], 1u << shift) >> shift & ((1u << bits) - 1);
         group_is_last = before + 1 == groups ? 1 : 0;
         if (group_is_last != 0) { atomicAdd(list.at[0].run_groups_done[word], 0u - (groups << shift)); }
         memoryBarrierBuffer();

@@ -29,7 +29,8 @@ void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     }
     const vec4 growth = counts * amplitude / float(max(age, 1)), off = history_tiles.at[tile].errors;
     if (kMasked && age > 0) {
-        atomicAdd(TARGET.warp_counters.expected_squares, inSquareSteps(3 * float(kCellSize * kCellSize) * dot(counts, off * off)));
+        atomicAdd(TARGET.warp_counters.expected_squares,
+                  inSquareSteps(3 * float(kCellSize * kCellSize) * dot(counts, off * off)));
         atomicAdd(TARGET.warp_counters.found_squares, inSquareSteps(dot(counts, sums) / kErrorSteps));
     }
     history_tiles.at[tile] = HistoryTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0, 0);
@@ -37,15 +38,19 @@ void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
 
 // True if this frame measures what the tile would lose with pixels twice as wide, once it is rendered.
 bool isMeasured(uint tile) {
-    const bool measured = kMeasures && !is_wider && TARGET.is_made != 0 && tile % kMeasuredParts == TARGET.measured;
-    if (measured && gl_LocalInvocationIndex == 0) { frames_waited = clamp(HistoryTiles(TARGET.history_tiles).at[tile].age, 1, kMostWaited); }
+    const bool measured =
+        kMeasures && !is_wider && TARGET.is_made != 0 && tile % kMeasuredParts == TARGET.measured;
+    if (measured && gl_LocalInvocationIndex == 0) {
+        frames_waited = clamp(HistoryTiles(TARGET.history_tiles).at[tile].age, 1, kMostWaited);
+    }
     return measured;
 }
 
 // What its pixels have found: its error or, with pixels twice as wide, their loss.
 void leaveFound(uint tile, uint cost, vec4 sums) {
     if (kMeasures && is_wider) {
-        atomicAdd(TARGET.warp_counters.wider_squares, inSquareSteps(dot(sums, vec4(1)) / kErrorSteps) * frames_waited);
+        atomicAdd(TARGET.warp_counters.wider_squares,
+                  inSquareSteps(dot(sums, vec4(1)) / kErrorSteps) * frames_waited);
     } else {
         leaveTile(tile, cost, sums, 0);
     }

@@ -1,6 +1,8 @@
 // Lists whose length only the GPU knows, and the dispatches over them.
 
-uint groupsOver(uint count, uint group_items) { return count / group_items + (count % group_items != 0 ? 1 : 0); }
+uint groupsOver(uint count, uint group_items) {
+    return count / group_items + (count % group_items != 0 ? 1 : 0);
+}
 
 DispatchSize dispatchOver(uint count, uint group_items) {
     // In rows of equal length, with less than a group for each row left over in the last one.
@@ -12,7 +14,8 @@ DispatchSize dispatchOver(uint count, uint group_items) {
 // `count` if one step will do, since there are no more than `most_in_one`, or more than a run's counter of
 // workgroups can count.
 uint sumRunLength(uint count, uint most_in_one) {
-    return count > most_in_one && count <= kSumRuns * ((1u << kSumRunBits) - 1) ? groupsOver(count, kSumRuns) : count;
+    return count > most_in_one && count <= kSumRuns * ((1u << kSumRunBits) - 1) ? groupsOver(count, kSumRuns)
+                                                                                : count;
 }
 
 // The sum of the counts before one of `count` counts, after sumUp.
@@ -29,6 +32,6 @@ uint sortBlockKeys(uint count) { return kSortBlock * max(groupsOver(count, kSort
 // again.
 ListState makeList(uint needed, uint capacity) {
     const uint count = needed <= capacity ? needed : 0;
-    return ListState(needed, count, /*groups_done*/ 0, uvec4(0), dispatchOver(count, kGroupSize), dispatchOver(count, kListBlock),
-                     dispatchOver(count, sortBlockKeys(count)));
+    return ListState(needed, count, /*groups_done*/ 0, uvec4(0), dispatchOver(count, kGroupSize),
+                     dispatchOver(count, kListBlock), dispatchOver(count, sortBlockKeys(count)));
 }

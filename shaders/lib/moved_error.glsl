@@ -18,8 +18,10 @@ float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
 float holeError(WarpView warp, vec2 source_px, int repeated_px) {
     const ivec2 last = ivec2(warp.size_px) - 1;
     const ivec2 source = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6))));
-    const ivec2 here = clamp(source, ivec2(0), last), beyond = clamp(source + ivec2(repeated_px, 0), ivec2(0), last);
+    const ivec2 here = clamp(source, ivec2(0), last),
+                beyond = clamp(source + ivec2(repeated_px, 0), ivec2(0), last);
     const int width = last.x + 1;
-    const vec3 difference = warp.hole_error * (sourceAt(uint(beyond.y * width + beyond.x)).rgb - sourceAt(uint(here.y * width + here.x)).rgb);
+    const vec3 difference = warp.hole_error * (sourceAt(uint(beyond.y * width + beyond.x)).rgb -
+                                               sourceAt(uint(here.y * width + here.x)).rgb);
     return dot(difference, difference) + kLeastHoleError;
 }

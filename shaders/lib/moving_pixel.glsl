@@ -15,7 +15,9 @@
 const uint kLanded = 0x20u;
 const uint kSpreadBits = 0x1fu;
 
-uint movingPixel(float inverse_depth, uint landed, uint spread) { return ((((floatBitsToUint(inverse_depth) + 16) >> 5) + 1) << 6) | landed | spread; }
+uint movingPixel(float inverse_depth, uint landed, uint spread) {
+    return ((((floatBitsToUint(inverse_depth) + 16) >> 5) + 1) << 6) | landed | spread;
+}
 float inverseDepthOf(uint moving) { return uintBitsToFloat(((moving >> 6) - 1) << 5); }
 
 // A pixel is moved back from the middle of the pixel in which it arrived, and so comes out as far off as it
@@ -30,7 +32,9 @@ ivec2 pixelOfParity(vec2 place_px, uint moving) {
 // of the inverse depth, as a share of its square. NaN counts as none.
 uint spreadCode(float variance_share) {
     const int octave = int(floatBitsToUint(variance_share * 1.41421356) >> 23) - 127;  // the nearest
-    return isPositive(variance_share) ? uint(clamp(octave - int(2 * kLeastSpreadLog2) + 1, 0, int(kSpreadCodes))) : 0;
+    return isPositive(variance_share)
+               ? uint(clamp(octave - int(2 * kLeastSpreadLog2) + 1, 0, int(kSpreadCodes)))
+               : 0;
 }
 float varianceShareOf(uint moving) {
     const int code = int(moving & kSpreadBits);

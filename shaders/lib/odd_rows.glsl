@@ -29,8 +29,10 @@ float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     const uint word = placeAt(warp, at), place = placeWords().at[word];
     pixel_class = place & 3;
     const uint source_row = (place & kRepeats) != 0 ? at.y - 1 : at.y;
-    const Sample found = sampleInRow(float(place >> 3) / kPlaceSteps, source_row * warp.size_px.x, int(warp.size_px.x));
-    putPixel(warp, at, pixel_class, found.colour, keepsDepths() ? uintBitsToFloat(placeWords().at[word + 1]) : 0);
+    const Sample found =
+        sampleInRow(float(place >> 3) / kPlaceSteps, source_row * warp.size_px.x, int(warp.size_px.x));
+    putPixel(warp, at, pixel_class, found.colour,
+             keepsDepths() ? uintBitsToFloat(placeWords().at[word + 1]) : 0);
     return 0;
 }
 
@@ -44,13 +46,18 @@ bool mayBeMean(WarpView warp, uint y) {
 // The rows above and below this one are even, and finished before any odd row is begun.
 void putMeans(uint y, uint width, uint tiles) {
     for (uint item = gl_LocalInvocationIndex; item < mean_count * kTileSize; item += kWarpGroup) {
-        const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize], x = tile * kTileSize + item % kTileSize;
-        if (kClasses && item % kTileSize == 0) { tile_classes[tile] = pass.pixel_classes.at[(y - 1) * tiles + tile]; }
+        const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize],
+                   x = tile * kTileSize + item % kTileSize;
+        if (kClasses && item % kTileSize == 0) {
+            tile_classes[tile] = pass.pixel_classes.at[(y - 1) * tiles + tile];
+        }
         if (x >= width) { continue; }
         const uint i = y * width + x;
         const vec4 above = colourAt(pass.target, pass.half_target, i - width);
         const vec4 below = colourAt(pass.target, pass.half_target, i + width);
         putColour(pass.target, pass.half_target, i, 0.5 * (above + below));
-        if (keepsDepths()) { pass.depths.at[i] = 0.5 * (pass.depths.at[i - width] + pass.depths.at[i + width]); }
+        if (keepsDepths()) {
+            pass.depths.at[i] = 0.5 * (pass.depths.at[i - width] + pass.depths.at[i + width]);
+        }
     }
 }

@@ -14,11 +14,12 @@ struct Outline {
     float circle_px;  // radius of the low-pass; 0: none
     bool ellipse;     // false: the disc reaches the eye's plane, or nothing of it is visible
     float a, b, d, e, phi, gamma, kappa, cut;
-    vec2 rows;          // y of the lowest and highest point, offsets
+    vec2 rows;  // y of the lowest and highest point, offsets
     float y_leftmost, y_rightmost;
 };
 
-Outline outlineOf(vec2 centre_px, vec3 plane, vec2 perspective, float inverse_depth, float cut, float low_pass) {
+Outline outlineOf(vec2 centre_px, vec3 plane, vec2 perspective, float inverse_depth, float cut,
+                  float low_pass) {
     Outline o;
     o.centre_px = centre_px;
     precise const float circle_px = sqrt(cut / low_pass);
@@ -55,11 +56,18 @@ vec2 boundsBetweenRows(Outline o, float y0, float y1) {
     if (o.ellipse) {
         const float first = max(top, o.rows.x), last = min(bottom, o.rows.y);
         if (first <= last) {
-            const float y_left = clamp(o.y_leftmost, first, last), y_right = clamp(o.y_rightmost, first, last);
+            const float y_left = clamp(o.y_leftmost, first, last),
+                        y_right = clamp(o.y_rightmost, first, last);
             precise const float h_left = o.e + o.gamma * y_left, h_right = o.e + o.gamma * y_right;
             precise const float dy_left = o.d * y_left, dy_right = o.d * y_right;
-            precise const float s_left = (o.cut * o.phi * h_left - sqrt(max(0, o.cut * h_left * h_left - o.kappa * dy_left * dy_left))) / o.kappa;
-            precise const float s_right = (o.cut * o.phi * h_right + sqrt(max(0, o.cut * h_right * h_right - o.kappa * dy_right * dy_right))) / o.kappa;
+            precise const float s_left =
+                (o.cut * o.phi * h_left -
+                 sqrt(max(0, o.cut * h_left * h_left - o.kappa * dy_left * dy_left))) /
+                o.kappa;
+            precise const float s_right =
+                (o.cut * o.phi * h_right +
+                 sqrt(max(0, o.cut * h_right * h_right - o.kappa * dy_right * dy_right))) /
+                o.kappa;
             bounds = vec2((s_left - o.b * y_left) / o.a, (s_right - o.b * y_right) / o.a);
         }
     }
@@ -89,7 +97,8 @@ ivec2 unitsBetween(vec2 bounds_px, uint size, uint count) {
 ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
     if (!o.ellipse) { return tile_box.xz; }
     const float first_row = float(row * kTileSize) + 0.5;
-    const vec2 bounds = boundsBetweenRows(o, first_row - kOutlinePadding, first_row + float(kTileSize - 1) + kOutlinePadding);
+    const vec2 bounds =
+        boundsBetweenRows(o, first_row - kOutlinePadding, first_row + float(kTileSize - 1) + kOutlinePadding);
     const ivec2 tiles = unitsBetween(bounds, kTileSize, 0x7fffffu);
     return ivec2(max(tiles.x, tile_box.x), min(tiles.y, tile_box.z));
 }

@@ -3,11 +3,15 @@
 uint firstSplat() { return gl_WorkGroupID.z * pass.splats_apart; }
 
 // Where the pairs of the target's block of kListBlock splats begin.
-uint pairsBefore(uint block) { return pass.group_sums.at[gl_WorkGroupID.z * groupsOver(pass.visible.at[0].count, kListBlock) + block]; }
+uint pairsBefore(uint block) {
+    return pass.group_sums.at[gl_WorkGroupID.z * groupsOver(pass.visible.at[0].count, kListBlock) + block];
+}
 
 // Where the `count` pairs of a splat lie, half open; empty if the capacity does not suffice for the pairs of
 // all splats.
-uvec2 pairsFrom(uint begin, uint count) { return pass.pairs.at[0].count > 0 ? uvec2(begin, begin + count) : uvec2(0); }
+uvec2 pairsFrom(uint begin, uint count) {
+    return pass.pairs.at[0].count > 0 ? uvec2(begin, begin + count) : uvec2(0);
+}
 
 // The next of `pairs`, if there is one. `tile`: its number.
 void putPair(inout uvec2 pairs, uint tile, uint rank) {

@@ -8,7 +8,9 @@ uvec2 packHalves(vec4 colour) {
 }
 vec4 unpackHalves(uvec2 packed) { return vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y)); }
 
-vec4 colourAt(FloatColours colours, HalfColours half_colours, uint i) { return kHalfColours ? unpackHalves(half_colours.at[i]) : colours.at[i]; }
+vec4 colourAt(FloatColours colours, HalfColours half_colours, uint i) {
+    return kHalfColours ? unpackHalves(half_colours.at[i]) : colours.at[i];
+}
 
 void putColour(FloatColours colours, HalfColours half_colours, uint i, vec4 colour) {
     if (kHalfColours) {

@@ -20,7 +20,8 @@ struct Moved {
 bool isNearHidden(WarpView warp, uvec2 pixel) {
     const vec2 low = vec2(pixel) - kHiddenMargin, high = vec2(pixel) + kHiddenMargin;
     return isHiddenAt(warp, pass.shown_mask, low) || isHiddenAt(warp, pass.shown_mask, high) ||
-           isHiddenAt(warp, pass.shown_mask, vec2(low.x, high.y)) || isHiddenAt(warp, pass.shown_mask, vec2(high.x, low.y));
+           isHiddenAt(warp, pass.shown_mask, vec2(low.x, high.y)) ||
+           isHiddenAt(warp, pass.shown_mask, vec2(high.x, low.y));
 }
 
 // A pixel of the source as the target sees it. A pixel that blends two depths moves with what is in front:
@@ -37,13 +38,15 @@ Moved moveSource(WarpView warp, uvec2 pixel) {
     const vec3 move = moveBetweenEyes(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth);
     const bool seen = !hidesTiles() || !isNearHidden(warp, pixel);
     const uint spread = copiesColours() ? parityOf(pixel) : moving & kSpreadBits;
-    return Moved(vec2(pixel) + 0.5 + move.xy, move.xy, inverse_depth / move.z, spread, seen && moving != 0 && move.z > 0);
+    return Moved(vec2(pixel) + 0.5 + move.xy, move.xy, inverse_depth / move.z, spread,
+                 seen && moving != 0 && move.z > 0);
 }
 
 // Too far out to reach the picture even if the surface is stretched.
 bool isOut(WarpView warp, Moved pixel) {
     const float reach_px = float(warp.gap_px + 2);
-    return any(lessThan(pixel.place_px, vec2(-reach_px))) || any(greaterThan(pixel.place_px, vec2(warp.size_px) + reach_px));
+    return any(lessThan(pixel.place_px, vec2(-reach_px))) ||
+           any(greaterThan(pixel.place_px, vec2(warp.size_px) + reach_px));
 }
 
 void putLanded(WarpView warp, Moved pixel) {
@@ -59,7 +62,11 @@ void putBetween(WarpView warp, Moved here, Moved right, int row) {
     if (x >= end) { return; }
     [[dont_unroll]] do {
         const float share = (float(x) + 0.5 - here.place_px.x) / reach;
-        put(warp, ivec2(x, row), movingPixel(mix(here.inverse_depth, right.inverse_depth, share), 0, max(here.spread, right.spread)));
+        put(warp, ivec2(x, row),
+            movingPixel(mix(here.inverse_depth, right.inverse_depth, share), 0,
+                        max(here.spread, right.spread)));
         ++x;
-    } while (x < end);
+    }
+    while (x < end)
+        ;
 }

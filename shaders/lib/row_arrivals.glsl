@@ -27,9 +27,13 @@ void moveRow(WarpView warp, uint y, uint width) {
             }
             here = right;
             ++x;
-        } while (x < end);
+        }
+        while (x < end)
+            ;
         x += 4 * kWarpGroup - 4;
-    } while (x < width);
+    }
+    while (x < width)
+        ;
 }
 
 // Four pixels at a time. Nothing arrives beyond the row's end.
@@ -38,11 +42,16 @@ void loadRow(uint row, uint width) {
     [[dont_unroll]] do {
         uvec4 four = uvec4(0);
         if (kMovesRow) {
-            if (x < width) { four = uvec4(row_arrivals[x], row_arrivals[x + 1], row_arrivals[x + 2], row_arrivals[x + 3]); }
+            if (x < width) {
+                four = uvec4(row_arrivals[x], row_arrivals[x + 1], row_arrivals[x + 2], row_arrivals[x + 3]);
+            }
         } else if (x + 4 <= width) {
-            four = uvec4(pass.moving.at[row + x], pass.moving.at[row + x + 1], pass.moving.at[row + x + 2], pass.moving.at[row + x + 3]);
+            four = uvec4(pass.moving.at[row + x], pass.moving.at[row + x + 1], pass.moving.at[row + x + 2],
+                         pass.moving.at[row + x + 3]);
         } else {
-            [[unroll]] for (uint i = 0; i < 3; ++i) { four[i] = x + i < width ? pass.moving.at[row + x + i] : 0; }
+            [[unroll]] for (uint i = 0; i < 3; ++i) {
+                four[i] = x + i < width ? pass.moving.at[row + x + i] : 0;
+            }
         }
         if (!kMovesRow && kSharedRow != 0 && x < width) {
             [[unroll]] for (uint i = 0; i < 4; ++i) { row_arrivals[x + i] = four[i]; }
@@ -51,7 +60,9 @@ void loadRow(uint row, uint width) {
         const uint bits = arrived.x | arrived.y | arrived.z | arrived.w;
         if (bits != 0) { atomicOr(arrived_bits[x / 32], bits << (x & 31)); }
         x += 4 * kWarpGroup;
-    } while (x < width);
+    }
+    while (x < width)
+        ;
 }
 
 // The nearest pixel to the left, or right, of `x` that something reached; -1: none.
@@ -79,7 +90,8 @@ struct Resolved {
 };
 
 Resolved resolveArrived(uvec2 at, uint arrival) {
-    return Resolved(at.x, (arrival & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(arrival), varianceShareOf(arrival));
+    return Resolved(at.x, (arrival & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(arrival),
+                    varianceShareOf(arrival));
 }
 
 // A pixel that nothing reached.
@@ -91,10 +103,14 @@ Resolved resolveOpen(WarpView warp, uint row, uvec2 at) {
     if (left >= 0 && right >= 0 && run <= warp.gap_px) {
         const float disparity_px = length(disparityPerInverseDepth(warp.target_from_source, vec2(at) + 0.5));
         if (abs(left_depth - right_depth) * disparity_px <= float(run + 1)) {
-            return Resolved(at.x, kGap, mix(left_depth, right_depth, float(int(at.x) - left) / float(right - left)), 0);
+            return Resolved(at.x, kGap,
+                            mix(left_depth, right_depth, float(int(at.x) - left) / float(right - left)), 0);
         }
-        return left_depth <= right_depth ? Resolved(uint(left), kGap, left_depth, 0) : Resolved(uint(right), kGap, right_depth, 0);
+        return left_depth <= right_depth ? Resolved(uint(left), kGap, left_depth, 0)
+                                         : Resolved(uint(right), kGap, right_depth, 0);
     }
-    if (left >= 0 && (right < 0 || left_depth <= right_depth)) { return Resolved(uint(left), kHole, left_depth, 0); }
+    if (left >= 0 && (right < 0 || left_depth <= right_depth)) {
+        return Resolved(uint(left), kHole, left_depth, 0);
+    }
     return right >= 0 ? Resolved(uint(right), kHole, right_depth, 0) : Resolved(at.x, kHole, 0, 0);
 }

@@ -25,13 +25,14 @@ vec3 shColour(SceneChunks chunks, SplatPlace at, vec3 direction) {
     Uints sh = Uints(chunks.at[at.chunk].sh);
     const uint word = at.in_chunk * (kPlaced ? (3 * ((bands + 1) * (bands + 1) - 1) + 1) / 2 : kShWords);
     if (kShDegree >= 1 && bands >= 1) {
-        colour += 0.4886025119029199 *
-                  (d.z * shCoefficient(sh, word, 2) - d.y * shCoefficient(sh, word, 1) - d.x * shCoefficient(sh, word, 3));
+        colour += 0.4886025119029199 * (d.z * shCoefficient(sh, word, 2) - d.y * shCoefficient(sh, word, 1) -
+                                        d.x * shCoefficient(sh, word, 3));
     }
     const vec3 dd = d * d;
     if (kShDegree >= 2 && bands >= 2) {
-        colour += 1.0925484305920792 * (d.x * d.y * shCoefficient(sh, word, 4) - d.y * d.z * shCoefficient(sh, word, 5) -
-                                        d.x * d.z * shCoefficient(sh, word, 7)) +
+        colour += 1.0925484305920792 *
+                      (d.x * d.y * shCoefficient(sh, word, 4) - d.y * d.z * shCoefficient(sh, word, 5) -
+                       d.x * d.z * shCoefficient(sh, word, 7)) +
                   0.31539156525252005 * (2 * dd.z - dd.x - dd.y) * shCoefficient(sh, word, 6) +
                   0.5462742152960396 * (dd.x - dd.y) * shCoefficient(sh, word, 8);
     }

@@ -19,7 +19,8 @@ struct CameraSplat {
 };
 
 vec3 cameraFromWorld(EyeView eye, vec3 direction) {
-    return vec3(dot(eye.camera_from_world_x, direction), dot(eye.camera_from_world_y, direction), dot(eye.camera_from_world_z, direction));
+    return vec3(dot(eye.camera_from_world_x, direction), dot(eye.camera_from_world_y, direction),
+                dot(eye.camera_from_world_z, direction));
 }
 
 // First and second column of the rotation matrix of a unit quaternion x, y, z, w.
@@ -33,28 +34,37 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
 struct SplatPlace {
     uint chunk, in_chunk;
 };
-SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
+SplatPlace placeOfSplat(uint i, uint chunk_bits) {
+    return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1));
+}
 
 // The placement of a chunk's scene among others, if there are any.
 vec3 placed(SceneChunks chunks, uint chunk, vec3 position) {
     if (!kPlaced) { return position; }
     Placements placements = Placements(chunks.at[chunk].placement);
-    const vec3 turned = position.x * placements.at[0].x + position.y * placements.at[0].y + position.z * placements.at[0].z;
+    const vec3 turned =
+        position.x * placements.at[0].x + position.y * placements.at[0].y + position.z * placements.at[0].z;
     return placements.at[0].scale * turned + placements.at[0].position;
 }
 vec3 placedDirection(SceneChunks chunks, uint chunk, vec3 direction) {
     if (!kPlaced) { return direction; }
     Placements placements = Placements(chunks.at[chunk].placement);
-    return direction.x * placements.at[0].x + direction.y * placements.at[0].y + direction.z * placements.at[0].z;
+    return direction.x * placements.at[0].x + direction.y * placements.at[0].y +
+           direction.z * placements.at[0].z;
 }
 vec3 directionInScene(SceneChunks chunks, uint chunk, vec3 direction) {
     if (!kPlaced) { return direction; }
     Placements placements = Placements(chunks.at[chunk].placement);
-    return vec3(dot(direction, placements.at[0].x), dot(direction, placements.at[0].y), dot(direction, placements.at[0].z));
+    return vec3(dot(direction, placements.at[0].x), dot(direction, placements.at[0].y),
+                dot(direction, placements.at[0].z));
 }
-float placedScale(SceneChunks chunks, uint chunk) { return kPlaced ? Placements(chunks.at[chunk].placement).at[0].scale : 1; }
+float placedScale(SceneChunks chunks, uint chunk) {
+    return kPlaced ? Placements(chunks.at[chunk].placement).at[0].scale : 1;
+}
 
-vec3 positionOf(SceneChunks chunks, SplatPlace at) { return placed(chunks, at.chunk, Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]); }
+vec3 positionOf(SceneChunks chunks, SplatPlace at) {
+    return placed(chunks, at.chunk, Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]);
+}
 
 // The splat in world space, without its chunk's fade.
 CameraSplat loadUnfadedSplat(SceneChunks chunks, SplatPlace at) {
@@ -95,7 +105,9 @@ CameraSplat cameraFromWorld(EyeView eye, CameraSplat splat) {
     return splat;
 }
 
-CameraSplat loadCameraSplat(SceneChunks chunks, SplatPlace at, EyeView eye) { return cameraFromWorld(eye, loadWorldSplat(chunks, at)); }
+CameraSplat loadCameraSplat(SceneChunks chunks, SplatPlace at, EyeView eye) {
+    return cameraFromWorld(eye, loadWorldSplat(chunks, at));
+}
 
 // rho at which alpha falls to 1/255; not positive for a splat that is never visible.
 float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
@@ -112,9 +124,15 @@ float negativeLog2Opacity(ProjectedSplat splat) { return abs(splat.opacity); }
 // The remainder of reference_px that single precision drops, x and y in eight bits each, in units of half its
 // last place. Without it the edge of a splat of a few pixels would be off by 1e-4 of its alpha in a picture
 // of 768 pixels, and that of a disc seen edge-on by far more.
-vec2 halfLastPlace(vec2 value) { return uintBitsToFloat(floatBitsToUint(value) & 0x7f800000u) * 5.9604645e-8; }
-uint packRest(vec2 reference_px, vec2 rest_px) { return packSnorm4x8(vec4(0, 0, rest_px / max(halfLastPlace(reference_px), vec2(1e-30)))); }
-vec2 restOfReference(ProjectedSplat splat) { return unpackSnorm4x8(splat.colour.y).zw * halfLastPlace(splat.reference_px); }
+vec2 halfLastPlace(vec2 value) {
+    return uintBitsToFloat(floatBitsToUint(value) & 0x7f800000u) * 5.9604645e-8;
+}
+uint packRest(vec2 reference_px, vec2 rest_px) {
+    return packSnorm4x8(vec4(0, 0, rest_px / max(halfLastPlace(reference_px), vec2(1e-30))));
+}
+vec2 restOfReference(ProjectedSplat splat) {
+    return unpackSnorm4x8(splat.colour.y).zw * halfLastPlace(splat.reference_px);
+}
 
 uvec2 packColour(vec3 colour) {
     // The greatest half float is 65504; colours are not negative.
@@ -147,7 +165,8 @@ ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_refe
     const float a = length(along_x);
     const vec2 turn = along_x / a;  // cosine, sine
     const vec3 plane = vec3(a, dot(turn, along_y), turn.x * along_y.y - turn.y * along_y.x);
-    const bool disc = abs(delta) > kEdgeOnSine * length(c) && a < kMaxPlaneSlope && abs(plane.y) < kMaxPlaneSlope && abs(plane.z) < kMaxPlaneSlope && a > 0;
+    const bool disc = abs(delta) > kEdgeOnSine * length(c) && a < kMaxPlaneSlope &&
+                      abs(plane.y) < kMaxPlaneSlope && abs(plane.z) < kMaxPlaneSlope && a > 0;
     if (disc) {
         p.plane_from_pixel = plane;
         p.perspective = row_w.xy / eye.focal_px;
@@ -167,10 +186,14 @@ void placeExactly(inout ProjectedSplat p, vec3 position, EyeView eye) {
     const vec2 y = addExact(exactSum(position.y, -eye.position.y), vec2(-eye.position_low.y, 0));
     const vec2 z = addExact(exactSum(position.z, -eye.position.z), vec2(-eye.position_low.z, 0));
     const vec2 depth = dotExact(eye.camera_from_world_z, eye.camera_from_world_z_low, x, y, z);
-    const vec2 slope_x = divideExact(dotExact(eye.camera_from_world_x, eye.camera_from_world_x_low, x, y, z), depth);
-    const vec2 slope_y = divideExact(dotExact(eye.camera_from_world_y, eye.camera_from_world_y_low, x, y, z), depth);
-    const vec2 x_px = addExact(multiplyExact(vec2(eye.focal_px.x, eye.focal_px_low.x), slope_x), vec2(eye.principal_px.x, eye.principal_px_low.x));
-    const vec2 y_px = addExact(multiplyExact(vec2(eye.focal_px.y, eye.focal_px_low.y), slope_y), vec2(eye.principal_px.y, eye.principal_px_low.y));
+    const vec2 slope_x =
+        divideExact(dotExact(eye.camera_from_world_x, eye.camera_from_world_x_low, x, y, z), depth);
+    const vec2 slope_y =
+        divideExact(dotExact(eye.camera_from_world_y, eye.camera_from_world_y_low, x, y, z), depth);
+    const vec2 x_px = addExact(multiplyExact(vec2(eye.focal_px.x, eye.focal_px_low.x), slope_x),
+                               vec2(eye.principal_px.x, eye.principal_px_low.x));
+    const vec2 y_px = addExact(multiplyExact(vec2(eye.focal_px.y, eye.focal_px_low.y), slope_y),
+                               vec2(eye.principal_px.y, eye.principal_px_low.y));
     p.reference_px = vec2(x_px.x, y_px.x);
     p.colour.y = packRest(p.reference_px, vec2(x_px.y, y_px.y));
 }

@@ -15,7 +15,9 @@ uint sumRange(CoherentUints sums, uint step_begin, uint end) {
     [[dont_unroll]] do {
         const uint first = step_begin + thread * kSumsPerThread;
         uint values[kSumsPerThread];
-        [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) { values[i] = first + i < end ? sums.at[first + i] : 0; }
+        [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) {
+            values[i] = first + i < end ? sums.at[first + i] : 0;
+        }
         uint in_step = 0;
         [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) {
             uint carry;
@@ -31,7 +33,9 @@ uint sumRange(CoherentUints sums, uint step_begin, uint end) {
         }
         before_step += of_step;
         step_begin += kGroupSize * kSumsPerThread;
-    } while (step_begin < end);
+    }
+    while (step_begin < end)
+        ;
     // Split into halves, the sum over the threads fits. The sum of the lower halves follows, since it is
     // known modulo 2^32.
     uint upper_halves;
@@ -63,7 +67,8 @@ void sumUp(CoherentUints sums, uint group, uint count, ListStates result, uint c
             begin = count;
             end = count + groupsOver(count, length);
         }
-        if (of_all ? isLastGroup(result) : group < count && isLastOfRun(result, begin / length, end - begin, kSumRunBits)) {
+        if (of_all ? isLastGroup(result)
+                   : group < count && isLastOfRun(result, begin / length, end - begin, kSumRunBits)) {
             const uint total = sumRange(sums, begin, end);
             if (gl_LocalInvocationIndex == 0) {
                 if (of_all) {
@@ -75,5 +80,7 @@ void sumUp(CoherentUints sums, uint group, uint count, ListStates result, uint c
         }
         if (of_all) { return; }
         of_all = true;
-    } while (true);
+    }
+    while (true)
+        ;
 }

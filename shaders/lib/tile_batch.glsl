@@ -9,28 +9,35 @@ shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBa
 
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
     const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
-    const float low_pass = pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
+    const float low_pass =
+        pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
     // Relative to the tile, single precision places the centre to 1e-6 px.
-    batch_reference[slot] = has_reference ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
-                                          : vec4(middle_px - vec2(tile_px), scale * splat.reference_px);
-    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
+    batch_reference[slot] = has_reference
+                                ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
+                                : vec4(middle_px - vec2(tile_px), scale * splat.reference_px);
+    batch_plane[slot] = vec4(scale * splat.plane_from_pixel,
+                             kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
     if (is_coarse) { return; }  // its cell meets them all
-    // A subgroup's slots are consecutive, so that one lane can set the bits of all that are here; either 32 divides the slot of lane 0, or
-    // the subgroup's width divides 32.
+    // A subgroup's slots are consecutive, so that one lane can set the bits of all that are here; either 32
+    // divides the slot of lane 0, or the subgroup's width divides 32.
     const uint cells = cellsOf(splat, tile_px, low_pass), first_slot = slot - gl_SubgroupInvocationID;
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
         if (subgroupElect()) {
             uint word = 0;
             [[dont_unroll]] do {
-                if (lanes[word] != 0) { atomicOr(cell_splats[cell][first_slot / 32 + word], lanes[word] << (first_slot & 31)); }
+                if (lanes[word] != 0) {
+                    atomicOr(cell_splats[cell][first_slot / 32 + word], lanes[word] << (first_slot & 31));
+                }
                 ++word;
-            } while (word < (lanes_in_subgroup + 31) / 32);
+            }
+            while (word < (lanes_in_subgroup + 31) / 32)
+                ;
         }
     }
 }
@@ -41,11 +48,15 @@ uint indexInCell() { return gl_LocalInvocationIndex % kThreadsPerCell; }
 
 // Loads splats to the slots from first_slot on: all of the workgroup, or each cell those of its coarse tile.
 void loadBatch(uint lanes, uint begin, uint first_slot, uint splats, uvec2 tile_px, bool is_coarse) {
-    if (is_coarse && indexInCell() == 0) { cell_splats[cellIndex()][0] = splats < 32 ? (1u << splats) - 1 : 0xffffffffu; }
+    if (is_coarse && indexInCell() == 0) {
+        cell_splats[cellIndex()][0] = splats < 32 ? (1u << splats) - 1 : 0xffffffffu;
+    }
     uint i = is_coarse ? indexInCell() : gl_SubgroupID * lanes + gl_SubgroupInvocationID;
     if (i >= splats) { return; }
     [[dont_unroll]] do {
         loadSplat(first_slot + i, lanes, pass.ranks.at[begin + i], tile_px, is_coarse);
         i += is_coarse ? kThreadsPerCell : kThreads;
-    } while (i < splats);
+    }
+    while (i < splats)
+        ;
 }

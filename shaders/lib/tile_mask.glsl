@@ -1,11 +1,15 @@
 // The tile of a pixel, the pixel of a place; and a set of tiles, one bit each: bit x & 31 of word x / 32 in
 // the tile's row; every row begins a word.
 
-uint tileOf(uvec2 size_tiles, uvec2 pixel) { return (pixel.y / kTileSize) * size_tiles.x + pixel.x / kTileSize; }
+uint tileOf(uvec2 size_tiles, uvec2 pixel) {
+    return (pixel.y / kTileSize) * size_tiles.x + pixel.x / kTileSize;
+}
 
 // The pixel that contains a place, or the nearest one; within the picture even for NaN, of which a clamp
 // alone may make anything.
-uvec2 pixelAt(uvec2 size_px, vec2 place_px) { return min(uvec2(clamp(place_px, vec2(0), vec2(size_px) - 1)), size_px - 1); }
+uvec2 pixelAt(uvec2 size_px, vec2 place_px) {
+    return min(uvec2(clamp(place_px, vec2(0), vec2(size_px) - 1)), size_px - 1);
+}
 
 uint maskWords(uvec2 size_tiles) { return (size_tiles.x + 31) / 32; }
 

@@ -16,7 +16,8 @@ uint smallRow(ivec2 in_row) {
 }
 
 uvec2 packTileSet(ivec4 box, uint small) {
-    return uvec2(uint(box.x) | uint(box.y) << 16, isSmallBox(box) ? 0x80000000u | small : uint(box.z) | uint(box.w) << 16);
+    return uvec2(uint(box.x) | uint(box.y) << 16,
+                 isSmallBox(box) ? 0x80000000u | small : uint(box.z) | uint(box.w) << 16);
 }
 
 bool isSmall(uvec2 tile_set) { return (tile_set.y & 0x80000000u) != 0; }
@@ -27,4 +28,6 @@ ivec4 largeBox(uvec2 tile_set) { return ivec4(firstTile(tile_set), tile_set.y & 
 
 // The tiles of a small set, one bit each, and where the tile of a bit lies.
 uint smallTiles(uvec2 tile_set) { return isSmall(tile_set) ? tile_set.y & 0xffffu : 0; }
-ivec2 tileOfBit(uvec2 tile_set, int bit) { return firstTile(tile_set) + ivec2(bit % kSmallBox, bit / kSmallBox); }
+ivec2 tileOfBit(uvec2 tile_set, int bit) {
+    return firstTile(tile_set) + ivec2(bit % kSmallBox, bit / kSmallBox);
+}

@@ -21,8 +21,10 @@ bool isUnseen(WarpView warp, Uints shown_mask, uint tile, bool beyond_counts) {
     for (uint corner = 0; corner < 4; ++corner) {
         const vec2 at = vec2((corner & 1) == 0 ? first.x : last.x, corner < 2 ? first.y : last.y) + 0.5;
         const vec3 moved = movePixel(warp.source_from_target, at, 0);
-        const bool beyond = !(moved.z > 0) || any(lessThan(moved.xy, low)) || any(greaterThan(moved.xy, high));
-        unseen = unseen || (beyond_counts && beyond) || (any_hidden && !beyond && isHiddenAt(warp, shown_mask, moved.xy));
+        const bool beyond =
+            !(moved.z > 0) || any(lessThan(moved.xy, low)) || any(greaterThan(moved.xy, high));
+        unseen = unseen || (beyond_counts && beyond) ||
+                 (any_hidden && !beyond && isHiddenAt(warp, shown_mask, moved.xy));
     }
     return unseen;
 }

@@ -15,7 +15,9 @@ vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
 }
 
 // By how many pixels the other eye's view is shifted per unit of inverse depth, as a vector.
-vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) { return kRectified ? vec2(map.shift.x, 0) : map.shift.xy - pixel_px * map.shift.z; }
+vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) {
+    return kRectified ? vec2(map.shift.x, 0) : map.shift.xy - pixel_px * map.shift.z;
+}
 
 // If errors are predicted, an odd row is warped like the even one above it, with that one's depths.
 bool movesEvenRows(WarpView warp) { return kRectified && warp.rows_apart == 2; }

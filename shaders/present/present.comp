@@ -23,7 +23,10 @@ vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), gre
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];
     if (kind == kTileHidden) { return colour; }  // nothing says how its pixels were made
-    const uint pixel_class = isThere(uvec2(pass.pixel_classes)) ? (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u : kCovered;
+    const uint pixel_class =
+        isThere(uvec2(pass.pixel_classes))
+            ? (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u
+            : kCovered;
     vec3 shade;
     if (kind == kTileEdge) {
         shade = vec3(0, 0.35, 1);
@@ -51,7 +54,9 @@ vec4 unpackBehind(uint bytes) {
 
 // Of all that a pixel shows: of D/A, or as its word has it.
 float inverseDepthAt(uint i) {
-    if (!isThere(uvec2(pass.words))) { return colourAt(pass.colours, pass.half_colours, i).a / pass.depths.at[i]; }
+    if (!isThere(uvec2(pass.words))) {
+        return colourAt(pass.colours, pass.half_colours, i).a / pass.depths.at[i];
+    }
     const uint word = pass.words.at[i];
     return word == 0 ? 0 : inverseDepthOf(word);
 }
@@ -67,7 +72,9 @@ float surfaceAlong(ivec2 at, ivec2 way, float inverse_depth) {
         at += way;
         if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(pass.size_px)))) { return 0; }
         const float next = inverseDepthAt(uint(at.y) * pass.size_px.x + uint(at.x));
-        if (abs(next - inverse_depth) <= kOnSurface * inverse_depth) { return step == 0 ? inverse_depth : next; }
+        if (abs(next - inverse_depth) <= kOnSurface * inverse_depth) {
+            return step == 0 ? inverse_depth : next;
+        }
         inverse_depth = next;
     }
     return 0;
@@ -84,7 +91,8 @@ float surfaceDepth(ivec2 at, float inverse_depth, float alpha) {
     }
     if (!(front > (1 + kBetweenSurfaces) * back)) { return inverse_depth; }
     const bool is_of_inverse = isThere(uvec2(pass.words));  // the mean
-    const float share = is_of_inverse ? (inverse_depth - back) / (front - back) : (1 / back - 1 / inverse_depth) / (1 / back - 1 / front);
+    const float share = is_of_inverse ? (inverse_depth - back) / (front - back)
+                                      : (1 / back - 1 / inverse_depth) / (1 / back - 1 / front);
     return share * alpha >= 0.5 ? front : back;
 }
 
@@ -93,10 +101,14 @@ void main() {
     if (any(greaterThanEqual(at, pass.size_px))) { return; }
     const uint i = at.y * pass.size_px.x + at.x;
     vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
-    const bool has_mesh = isThere(uvec2(pass.mesh_depths)), has_depth = has_mesh || isThere(uvec2(pass.device_depths));
+    const bool has_mesh = isThere(uvec2(pass.mesh_depths)),
+               has_depth = has_mesh || isThere(uvec2(pass.device_depths));
     float inverse_depth = has_depth ? inverseDepthAt(i) : 0;
     const float mesh_depth = has_mesh ? pass.mesh_depths.at[i] : 0;
-    if (has_mesh && pass.is_cut == 0 && !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) { pixel = vec4(0); }
+    if (has_mesh && pass.is_cut == 0 &&
+        !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) {
+        pixel = vec4(0);
+    }
     vec3 colour = clampToDisplay(pixel.rgb);
     // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided
     // out and multiplied back in.
@@ -110,11 +122,15 @@ void main() {
         left_alpha = 1 - share + share * behind.a;
     }
     if (see_through) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
-    if (isThere(uvec2(pass.tile_kinds))) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
+    if (isThere(uvec2(pass.tile_kinds))) {
+        colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize);
+    }
     if (linear || see_through) { colour = alpha * decode(colour); }
     if (see_through && !linear) { colour = encode(colour); }
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
-    const uint word = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(left_alpha * 255 + 0.5) << 24;
+    const uint word = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16
+                                            : bytes.r | bytes.g << 8 | bytes.b << 16) |
+                      uint(left_alpha * 255 + 0.5) << 24;
     const uint kept = pass.kept_bits;
     pass.pixels.at[i] = kept == 0 ? word : (word & ~kept) | (pass.pixels.at[i] & kept);
     if (isThere(uvec2(pass.device_depths))) {

@@ -23,6 +23,8 @@ void main() {
     const vec2 place = clamp(ray.xy / ray.z - 0.5, vec2(0), vec2(last));
     const uvec2 low = uvec2(place), high = min(low + 1, last);
     const vec2 share = place - vec2(low);
-    const vec4 light = mix(mix(lightAt(low.x, low.y), lightAt(high.x, low.y), share.x), mix(lightAt(low.x, high.y), lightAt(high.x, high.y), share.x), share.y);
-    pass.shown.at[at.y * pass.view_px.x + at.x] = packUnorm4x8(pass.linear != 0 ? light : vec4(encode(light.rgb), light.a));
+    const vec4 light = mix(mix(lightAt(low.x, low.y), lightAt(high.x, low.y), share.x),
+                           mix(lightAt(low.x, high.y), lightAt(high.x, high.y), share.x), share.y);
+    pass.shown.at[at.y * pass.view_px.x + at.x] =
+        packUnorm4x8(pass.linear != 0 ? light : vec4(encode(light.rgb), light.a));
 }

@@ -205,12 +205,13 @@ BINOSPLAT_CONSTANT uint kDoesAny = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// warp_history: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes
-// the blocks of a row of tiles.
+// warp_history: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup
+// makes the blocks of a row of tiles.
 BINOSPLAT_CONSTANT uint kHistoryColumns = 4;
 BINOSPLAT_CONSTANT uint kHistoryRows = 8;
 BINOSPLAT_CONSTANT uint kHistoryGroup = 64;
-BINOSPLAT_CONSTANT uint kHistoryTiles = kHistoryGroup * kHistoryColumns * kHistoryRows / (kTileSize * kTileSize);
+BINOSPLAT_CONSTANT uint kHistoryTiles =
+    kHistoryGroup * kHistoryColumns * kHistoryRows / (kTileSize * kTileSize);
 // Depths are examined this far around a block: within a frame, a head's motion shifts near content against
 // far content by less than that.
 BINOSPLAT_CONSTANT uint kHistoryBorder = 2;

@@ -298,12 +298,12 @@ struct TargetState {
     BINOSPLAT_STORED(Floats) depths;         // D = sum w z
     // Present where meshes cut through the splats: depth_scale / z + depth_offset.
     BINOSPLAT_STORED(Floats) mesh_depths;
-    BINOSPLAT_STORED(Vec2s) moments;               // I = sum w/z and J = sum w/z^2
-    BINOSPLAT_STORED(Uints) moving;                // if the picture is going to be warped: lib/moving_pixel.glsl
-    BINOSPLAT_STORED(Uints) arrivals;              // where these will arrive in the other eye
+    BINOSPLAT_STORED(Vec2s) moments;   // I = sum w/z and J = sum w/z^2
+    BINOSPLAT_STORED(Uints) moving;    // if the picture is going to be warped: lib/moving_pixel.glsl
+    BINOSPLAT_STORED(Uints) arrivals;  // where these will arrive in the other eye
     BINOSPLAT_STORED(HistoryTiles) history_tiles;  // if it is going to be a history
-    BINOSPLAT_STORED(Uints) tile_mask;             // lib/tile_mask.glsl: the tiles that are rendered; null: all
-    BINOSPLAT_STORED(Uints) tile_list;             // the same, unordered, if passes chose them
+    BINOSPLAT_STORED(Uints) tile_mask;  // lib/tile_mask.glsl: the tiles that are rendered; null: all
+    BINOSPLAT_STORED(Uints) tile_list;  // the same, unordered, if passes chose them
     // If tiles are chosen or may be coarse: those with pairs, coarse ones from the end backwards.
     BINOSPLAT_STORED(Uints) full_tiles;
     // If passes choose tiles, for each tile:

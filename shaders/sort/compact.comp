@@ -51,7 +51,10 @@ void main() {
     const uint group = groupIndex();
     const uint first = firstOfBlock(group);
     const uint own_word = gl_LocalInvocationIndex;
-    if (own_word < kBlockWords) { visible_words[own_word] = first < pass.splat_count ? pass.visible_bits.at[group * kBlockWords + own_word] : 0; }
+    if (own_word < kBlockWords) {
+        visible_words[own_word] =
+            first < pass.splat_count ? pass.visible_bits.at[group * kBlockWords + own_word] : 0;
+    }
     barrier();
     if (own_word < kBlockWords) {
         uint before = 0;
@@ -59,16 +62,20 @@ void main() {
         visible_before[own_word] = before;
     }
     const EyeView eye = shareEye(pass.eyes, pass.order_eye);
-    const uint blocks = blockCount(), before_block = group < blocks ? sumBefore(pass.group_offsets, group, blocks) : 0;
+    const uint blocks = blockCount(),
+               before_block = group < blocks ? sumBefore(pass.group_offsets, group, blocks) : 0;
     uint in_block = gl_LocalInvocationIndex;
     [[dont_unroll]] do {
         const uint bits = visible_words[in_block / 32], bit = 1u << (in_block & 31);
         if ((bits & bit) != 0) {
             const uint place = before_block + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
             const uint i = first + in_block;
-            pass.keys.at[place] = keyOf(depthOf(eye, positionOf(pass.chunks, placeOfSplat(i, pass.chunk_bits))), eye.near);
+            pass.keys.at[place] =
+                keyOf(depthOf(eye, positionOf(pass.chunks, placeOfSplat(i, pass.chunk_bits))), eye.near);
             pass.splats.at[place] = i;
         }
         in_block += kGroupSize;
-    } while (in_block < kCullBlock);
+    }
+    while (in_block < kCullBlock)
+        ;
 }

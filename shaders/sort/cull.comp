@@ -11,7 +11,7 @@
 #include "lib/sums.glsl"
 
 layout(constant_id = 0) const uint kSplatKind = kDiscs;
-layout(constant_id = 3) const bool kPlaced = false;      // pages of scenes that are placed among others
+layout(constant_id = 3) const bool kPlaced = false;  // pages of scenes that are placed among others
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
@@ -35,7 +35,9 @@ float reachAlong(CameraSplat splat, float radius, vec3 normal) {
 }
 
 // True if any of the disc lies on the side of the plane through the eye to which `normal` points.
-bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return isNotNegative(dot(splat.centre, normal) + reachAlong(splat, radius, normal)); }
+bool reachesInside(CameraSplat splat, float radius, vec3 normal) {
+    return isNotNegative(dot(splat.centre, normal) + reachAlong(splat, radius, normal));
+}
 
 // True if a box around the projected centre meets the picture.
 bool isOnScreen(CameraSplat splat, EyeView eye, vec2 half_px) {
@@ -50,16 +52,21 @@ bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     const vec2 first_tile = floor(low_px / float(kTileSize)), last_tile = floor(high_px / float(kTileSize));
     if (any(greaterThan(first_tile, last)) || any(lessThan(last_tile, vec2(0)))) { return false; }
     // Within the picture even if a corner is NaN, which tells nothing.
-    const uvec2 begin = min(uvec2(clamp(first_tile, vec2(0), last)), size_tiles - 1), end = min(uvec2(clamp(last_tile, vec2(0), last)), size_tiles - 1) + 1;
+    const uvec2 begin = min(uvec2(clamp(first_tile, vec2(0), last)), size_tiles - 1),
+                end = min(uvec2(clamp(last_tile, vec2(0), last)), size_tiles - 1) + 1;
     uint row = begin.y, bits = 0;
     [[dont_unroll]] do {
         uint x = begin.x;
         [[dont_unroll]] do {
             bits |= maskBits(mask, size_tiles, row, x, wordEnd(x, end.x));
             x = wordEnd(x, end.x);
-        } while (x < end.x);
+        }
+        while (x < end.x)
+            ;
         ++row;
-    } while (bits == 0 && row < end.y);
+    }
+    while (bits == 0 && row < end.y)
+        ;
     return bits != 0;
 }
 
@@ -70,7 +77,8 @@ bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
     const vec3 c = splat.centre;
     if (kSplatKind != kDiscs) {
         const ScreenGaussian g = screenGaussian(splat, eye);
-        const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px, half_px = sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding + 0.5;
+        const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px,
+                   half_px = sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding + 0.5;
         return meetsMask(mask, eye.size_tiles, centre_px - half_px, centre_px + half_px);
     }
     // The ellipse's bounds: the extremes of x/z and y/z over c + a cos t + b sin t.
@@ -105,7 +113,9 @@ bool isVisible(CameraSplat splat, EyeView eye) {
         return isOnScreen(splat, eye, sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding);
     }
     const float radius = sqrt(cut);
-    if (!isNotNegative(splat.centre.z + reachAlong(splat, radius, vec3(0, 0, 1)) - eye.near)) { return false; }
+    if (!isNotNegative(splat.centre.z + reachAlong(splat, radius, vec3(0, 0, 1)) - eye.near)) {
+        return false;
+    }
     const vec2 to_far_edge = vec2(eye.size_px) - eye.principal_px;
     if (reachesInside(splat, radius, vec3(eye.focal_px.x, 0, eye.principal_px.x)) &&
         reachesInside(splat, radius, vec3(-eye.focal_px.x, 0, to_far_edge.x)) &&
@@ -116,7 +126,9 @@ bool isVisible(CameraSplat splat, EyeView eye) {
     return isPositive(splat.centre.z - eye.near) && isOnScreen(splat, eye, vec2(sqrt(cut / eye.low_pass)));
 }
 
-bool isWanted(CameraSplat splat, EyeView eye, Uints mask) { return isVisible(splat, eye) && (!kMasked || meetsMask(splat, eye, mask)); }
+bool isWanted(CameraSplat splat, EyeView eye, Uints mask) {
+    return isVisible(splat, eye) && (!kMasked || meetsMask(splat, eye, mask));
+}
 
 void main() [[subgroup_uniform_control_flow]] {
     const uint group = groupIndex();
@@ -132,19 +144,23 @@ void main() [[subgroup_uniform_control_flow]] {
         const SplatPlace at = placeOfSplat(i, pass.chunk_bits);
         CameraSplat splat = loadUnfadedSplat(pass.chunks, at);
         if (kInPages) { splat.opacity *= pass.chunks.at[at.chunk].fade; }
-        const bool visible = isWanted(cameraFromWorld(first_eye, splat), first_eye, pass.first_tile_mask) ||
-                             (pass.eye_count > 1 && isWanted(cameraFromWorld(last_eye, splat), last_eye, pass.last_tile_mask));
+        const bool visible =
+            isWanted(cameraFromWorld(first_eye, splat), first_eye, pass.first_tile_mask) ||
+            (pass.eye_count > 1 && isWanted(cameraFromWorld(last_eye, splat), last_eye, pass.last_tile_mask));
         if (visible) {
             atomicOr(visible_words[in_block / 32], 1u << (in_block & 31));
             atomicAdd(visible_count, 1);
         }
         in_block += kGroupSize;
-    } while (in_block < kCullBlock);
+    }
+    while (in_block < kCullBlock)
+        ;
     barrier();
     const uint groups = blockCount();
     if (group < groups) {  // the last row of a dispatch may have more workgroups
         if (gl_LocalInvocationIndex < kBlockWords) {
-            pass.visible_bits.at[group * kBlockWords + gl_LocalInvocationIndex] = visible_words[gl_LocalInvocationIndex];
+            pass.visible_bits.at[group * kBlockWords + gl_LocalInvocationIndex] =
+                visible_words[gl_LocalInvocationIndex];
         }
         if (gl_LocalInvocationIndex == 0) { pass.group_counts.at[group] = visible_count; }
     }

@@ -33,7 +33,8 @@ struct Box {
 // True if the box reaches beyond `least` along `normal`, a direction in the eye's axes of any length; also
 // for NaN, which cull handles.
 bool reaches(Box box, EyeView eye, vec3 normal, float least) {
-    const vec3 n = normal.x * eye.camera_from_world_x + normal.y * eye.camera_from_world_y + normal.z * eye.camera_from_world_z;
+    const vec3 n = normal.x * eye.camera_from_world_x + normal.y * eye.camera_from_world_y +
+                   normal.z * eye.camera_from_world_z;
     const float rounding = kRounding * dot(abs(box.middle) + box.half_size, abs(n));
     return !isNegative(dot(box.middle, n) + dot(box.half_size, abs(n)) + rounding - least);
 }
@@ -82,7 +83,9 @@ uint listPages(uint first_word, uint words) {
             ++place;
         }
         word += kGroupSize;
-    } while (word < first_word + words);
+    }
+    while (word < first_word + words)
+        ;
     return total;
 }
 
@@ -105,16 +108,20 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.word_offsets.at[word] = bitCount(visible_words[gl_LocalInvocationIndex]);
     }
     // Like sumUp, for lib/block.glsl: if there are many, each run of pages has its own part of the list.
-    const uint groups = groupsOver(pass.page_count, kGroupSize), length = sumRunLength(groups, kMostPageGroupsInOneRun);
+    const uint groups = groupsOver(pass.page_count, kGroupSize),
+               length = sumRunLength(groups, kMostPageGroupsInOneRun);
     if (length < groups && group < groups) {
         const uint run = group / length, first = run * length, in_run = min(length, groups - first);
         if (isLastOfRun(pass.visible_pages, run, in_run, kSumRunBits)) {
-            const uint total = listPages(first * kGroupWords, min(in_run * kGroupWords, words - first * kGroupWords));
+            const uint total =
+                listPages(first * kGroupWords, min(in_run * kGroupWords, words - first * kGroupWords));
             if (gl_LocalInvocationIndex == 0) { pass.page_list.at[pass.page_count + run] = total; }
         }
     }
     if (!isLastGroup(pass.visible_pages)) { return; }
-    const uint total = length < groups ? sumRange(pass.page_list, pass.page_count, pass.page_count + groupsOver(groups, length)) : listPages(0, words);
+    const uint total = length < groups ? sumRange(pass.page_list, pass.page_count,
+                                                  pass.page_count + groupsOver(groups, length))
+                                       : listPages(0, words);
     if (gl_LocalInvocationIndex != 0) { return; }
     ListState list = makeList(total, pass.page_count);
     list.per_item = dispatchOver(total, 1);

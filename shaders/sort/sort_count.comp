@@ -19,7 +19,9 @@ const uint kMaxColumn = max(kSortRun, kMaxSortRuns);
 shared uint digit_counts[kMaxDigits];
 
 void countDigits(uint block, uint block_keys, uint count) {
-    for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) { digit_counts[digit] = 0; }
+    for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
+        digit_counts[digit] = 0;
+    }
     barrier();
     const uint begin = min(block * block_keys, count), end = begin + min(block_keys, count - begin);
     uint item = begin + gl_LocalInvocationIndex;
@@ -27,7 +29,9 @@ void countDigits(uint block, uint block_keys, uint count) {
         [[dont_unroll]] do {
             atomicAdd(digit_counts[(pass.keys.at[item] >> pass.shift) & (pass.digits - 1)], 1);
             item += kThreads;
-        } while (item < end);
+        }
+        while (item < end)
+            ;
     }
     barrier();
     for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
@@ -39,7 +43,9 @@ void countDigits(uint block, uint block_keys, uint count) {
 // returns the total.
 uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
     uint values[kMaxColumn];
-    [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) { values[row] = row < rows ? counts.at[(first + row) * pass.digits + digit] : 0; }
+    [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) {
+        values[row] = row < rows ? counts.at[(first + row) * pass.digits + digit] : 0;
+    }
     uint sum = 0;
     [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) {
         if (row < rows) { counts.at[(first + row) * pass.digits + digit] = sum; }
@@ -51,7 +57,8 @@ uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
 // One thread per digit, so that what they read lies side by side.
 void sumBlocksOfRun(uint run, uint blocks) {
     for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
-        pass.run_sums.at[run * pass.digits + digit] = sumColumn(pass.histograms, run * kSortRun, blocks, digit);
+        pass.run_sums.at[run * pass.digits + digit] =
+            sumColumn(pass.histograms, run * kSortRun, blocks, digit);
     }
 }
 

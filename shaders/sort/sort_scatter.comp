@@ -63,28 +63,37 @@ void placeDigits(uint block) {
             subgroup_digits[s * pass.digits + digit] = place;
             place += in_run;
             ++s;
-        } while (s < gl_NumSubgroups);
+        }
+        while (s < gl_NumSubgroups)
+            ;
         digit += kThreads;
-    } while (digit < pass.digits);
+    }
+    while (digit < pass.digits)
+        ;
 }
 
 void main() [[subgroup_uniform_control_flow]] {
     const uint count = pass.list.at[0].count;
     const uint block = gl_WorkGroupID.x;
-    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kThreads) { subgroup_digits[i] = 0; }
+    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kThreads) {
+        subgroup_digits[i] = 0;
+    }
     barrier();
 
     const uint lanes = laneCount();
     const uint own_digits = gl_SubgroupID * pass.digits;
     const uint block_keys = sortBlockKeys(count), run_keys = block_keys / gl_NumSubgroups;
     const uint block_begin = min(block * block_keys, count);
-    const uint run_begin = block_begin + min(gl_SubgroupID * run_keys, count - block_begin), run_end = run_begin + min(run_keys, count - run_begin);
+    const uint run_begin = block_begin + min(gl_SubgroupID * run_keys, count - block_begin),
+               run_end = run_begin + min(run_keys, count - run_begin);
     uint counted = run_begin + gl_SubgroupInvocationID;
     if (counted < run_end) {
         [[dont_unroll]] do {
             atomicAdd(subgroup_digits[own_digits + digitOf(pass.keys_in.at[counted])], 1);
             counted += lanes;
-        } while (counted < run_end);
+        }
+        while (counted < run_end)
+            ;
     }
     barrier();
     placeDigits(block);
@@ -105,7 +114,9 @@ void main() [[subgroup_uniform_control_flow]] {
         const uint before = subgroupBallotExclusiveBitCount(peers);
         // The first of several equal digits takes places for all of them and tells the others.
         uint place = 0;
-        if (valid && before == 0) { place = atomicAdd(subgroup_digits[own_digits + digit], subgroupBallotBitCount(peers)); }
+        if (valid && before == 0) {
+            place = atomicAdd(subgroup_digits[own_digits + digit], subgroupBallotBitCount(peers));
+        }
         place = subgroupShuffle(place, firstLane(peers) & (lanes - 1)) + before;
         if (valid) {
             pass.keys_out.at[place] = key;
@@ -113,5 +124,7 @@ void main() [[subgroup_uniform_control_flow]] {
         }
         subgroupBarrier();  // in the next step another lane is the first of a digit
         step_begin += lanes;
-    } while (step_begin < steps_end);
+    }
+    while (step_begin < steps_end)
+        ;
 }

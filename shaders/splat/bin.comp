@@ -42,7 +42,8 @@ void main() [[subgroup_uniform_control_flow]] {
     uint of_group;
     uint begin = scanGroup(own, of_group);
     if (group * kListBlock < splats) { begin += pairsBefore(group); }
-    const uint columns = pass.eyes.at[gl_WorkGroupID.z].size_tiles.x, first_tile = TARGET.first_tile, first_pair = pairsBefore(0);
+    const uint columns = pass.eyes.at[gl_WorkGroupID.z].size_tiles.x, first_tile = TARGET.first_tile,
+               first_pair = pairsBefore(0);
     [[unroll]] for (uint i = 0; i < kPerThread; ++i) {
         const uint rank = first + i;
         uvec2 pairs = pairsFrom(begin, counts[i]);
@@ -56,7 +57,9 @@ void main() [[subgroup_uniform_control_flow]] {
                     const uvec2 tile = uvec2(tileOfBit(tile_set, findLSB(bits)));
                     putPair(pairs, first_tile + tile.y * columns + tile.x, rank);
                     bits &= bits - 1;
-                } while (bits != 0);
+                }
+                while (bits != 0)
+                    ;
             }
         }
         listLarge(is_large, rank, begin, first_pair);

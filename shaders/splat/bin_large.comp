@@ -34,7 +34,9 @@ uint countRow(Uints mask, uvec2 size_tiles, int row, uint begin, uint end) {
         [[dont_unroll]] do {
             tiles += bitCount(bitsOf(mask, size_tiles, row, x, wordEnd(x, end)));
             x = wordEnd(x, end);
-        } while (x < end);
+        }
+        while (x < end)
+            ;
     }
     return tiles;
 }
@@ -49,17 +51,22 @@ void putRow(Uints mask, uvec2 size_tiles, uvec2 pairs, int row, uint begin, uint
             [[dont_unroll]] do {
                 putPair(pairs, first + x + findLSB(bits), rank);
                 bits &= bits - 1;
-            } while (bits != 0);
+            }
+            while (bits != 0)
+                ;
         }
         x = wordEnd(x, end);
-    } while (x < end);
+    }
+    while (x < end)
+        ;
 }
 
 // The pairs of the splat at place `i` of the list. Every lane of a subgroup must call it.
 void putLarge(uint i, uint lanes) {
     const uint rank = pass.large_splats.at[i], splat = firstSplat() + rank;
     const ivec4 box = largeBox(pass.tile_sets.at[splat]);
-    const Outline outline = outlineOfProjected(pass.splats.at[splat], pass.eyes.at[gl_WorkGroupID.z].low_pass);
+    const Outline outline =
+        outlineOfProjected(pass.splats.at[splat], pass.eyes.at[gl_WorkGroupID.z].low_pass);
     const uvec2 size_tiles = pass.eyes.at[gl_WorkGroupID.z].size_tiles;
     Uints mask = Uints(TARGET.tile_mask);
     uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[splat]);
@@ -69,10 +76,13 @@ void putLarge(uint i, uint lanes) {
         const ivec2 in_row = row < box.w ? tilesInRow(outline, uint(row), box) : ivec2(0);
         const uint begin = uint(in_row.x), end = uint(max(in_row.x, in_row.y));
         const uint tiles = countRow(mask, size_tiles, row, begin, end);
-        putRow(mask, size_tiles, uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y), row, begin, end, rank);
+        putRow(mask, size_tiles, uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y), row, begin, end,
+               rank);
         pairs.x += subgroupAdd(tiles);
         first_row += int(lanes);
-    } while (first_row < box.w);
+    }
+    while (first_row < box.w)
+        ;
     // project counted no fewer. If it counted more, the rest become pairs of no tile, which are sorted last
     // and never blended.
     for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
@@ -90,5 +100,7 @@ void main() [[subgroup_uniform_control_flow]] {
     [[dont_unroll]] do {
         putLarge(first + i, lanes);
         i += gl_NumWorkGroups.x * gl_NumSubgroups;
-    } while (i < large);
+    }
+    while (i < large)
+        ;
 }

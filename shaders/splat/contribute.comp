@@ -1,7 +1,7 @@
 // contribute: how much of an eye's picture each splat makes up, a workgroup per tile: it blends as rasterize
-// does, each cell the splats that meet it, and sums for each splat what its weights are and how far the picture
-// is from a wanted one where it shows, or how it should change. What threads sum are integers, in any order the
-// same.
+// does, each cell the splats that meet it, and sums for each splat what its weights are and how far the
+// picture is from a wanted one where it shows, or how it should change. What threads sum are integers, in any
+// order the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -27,7 +27,7 @@ const bool kPlaced = false;  // no splat of the scene is read
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
-const uint kWords = kBatchSize / 32;  // of a bit for each splat
+const uint kWords = kBatchSize / 32;                           // of a bit for each splat
 const uint kNarrow = kContributionSums;
 const uint kSums = kFits ? kContributionSums : kErrorSums;
 const float kMostBehind = 4;  // colours that show through nearly nothing are not told apart from rounding
@@ -53,9 +53,12 @@ void loadSplat(uint slot, uint rank, uvec2 tile_px) {
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho), low_pass = pass.eyes.at[pass.eye].low_pass;
-    batch_reference[slot] = has_reference ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
-                                          : vec4(vec2(pass.eyes.at[pass.eye].size_px) * 0.5 - vec2(tile_px), scale * splat.reference_px);
-    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
+    batch_reference[slot] =
+        has_reference
+            ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
+            : vec4(vec2(pass.eyes.at[pass.eye].size_px) * 0.5 - vec2(tile_px), scale * splat.reference_px);
+    batch_plane[slot] = vec4(scale * splat.plane_from_pixel,
+                             kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
     for (uint s = 0; s < kSums; ++s) { sums[slot][s] = 0; }
@@ -76,7 +79,9 @@ float rhoAt(vec2 d, vec2 at_reference, vec4 plane, vec4 depth_form, out bool by_
     if (kSplatKind != kDiscs) { return square; }
     const float q = depth_form.x + dot(depth_form.yz, d);
     const float z = 1 / q;
-    const float rho3 = floatBitsToUint(q) <= floatBitsToUint(pass.eyes.at[pass.eye].max_inverse_depth) ? square * (z * z) : 3e38;
+    const float rho3 = floatBitsToUint(q) <= floatBitsToUint(pass.eyes.at[pass.eye].max_inverse_depth)
+                           ? square * (z * z)
+                           : 3e38;
     const float rho2 = plane.w > 0 ? plane.w * dot(d, d) : 3e38;
     by_size = rho3 <= rho2;
     return min(rho3, rho2);
@@ -104,7 +109,8 @@ int[kContributionSums] blend(BatchSplat splat, vec2 first_px) {
         own[kSumMissing + 1] += limit(weight * missing[p].y);
         own[kSumMissing + 2] += limit(weight * missing[p].z);
         unblended[p] -= weight * colour;
-        const vec3 behind = clamp(unblended[p] * (1 / (counts ? after : 1)), vec3(-kMostBehind), vec3(kMostBehind));
+        const vec3 behind =
+            clamp(unblended[p] * (1 / (counts ? after : 1)), vec3(-kMostBehind), vec3(kMostBehind));
         const vec3 off = colour - behind;
         const float varied = opacity < kMaxAlpha ? weight : 0;  // else more of it would not show
         const float pull = varied * dot(off, missing[p]), hold = varied * dot(off, off);
@@ -115,19 +121,23 @@ int[kContributionSums] blend(BatchSplat splat, vec2 first_px) {
         own[kSumSizeHold] += limit(hold * growth * growth);
     }
     int steps[kContributionSums];
-    [[unroll]] for (uint s = 0; s < kContributionSums; ++s) { steps[s] = s < kSums ? int(round(own[s] * kContributionSteps)) : 0; }
+    [[unroll]] for (uint s = 0; s < kContributionSums; ++s) {
+        steps[s] = s < kSums ? int(round(own[s] * kContributionSteps)) : 0;
+    }
     return steps;
 }
 
 // Half of the lanes keep one of two values, and half the other: the sum over two lanes, `apart`.
 int halve(int first, int second, uint apart) {
     const bool keeps_first = (gl_SubgroupInvocationID & apart) == 0;
-    return (keeps_first ? first : second) + subgroupShuffle(keeps_first ? second : first, gl_SubgroupInvocationID ^ apart);
+    return (keeps_first ? first : second) +
+           subgroupShuffle(keeps_first ? second : first, gl_SubgroupInvocationID ^ apart);
 }
 
 // Lane s returns the sum of own[s] over all lanes.
 int sumLanes(int own[kContributionSums]) {
-    return halve(halve(halve(own[0], own[4], 4), halve(own[2], own[6], 4), 2), halve(halve(own[1], own[5], 4), halve(own[3], own[7], 4), 2), 1);
+    return halve(halve(halve(own[0], own[4], 4), halve(own[2], own[6], 4), 2),
+                 halve(halve(own[1], own[5], 4), halve(own[3], own[7], 4), 2), 1);
 }
 
 bool anyOpen() {
@@ -136,7 +146,9 @@ bool anyOpen() {
     return any_open;
 }
 
-BatchSplat splatAt(uint slot) { return BatchSplat(batch_reference[slot], batch_plane[slot], batch_depth[slot], batch_colour[slot]); }
+BatchSplat splatAt(uint slot) {
+    return BatchSplat(batch_reference[slot], batch_plane[slot], batch_depth[slot], batch_colour[slot]);
+}
 
 // Blends the splats of a word of the cell's bits.
 void blendWord(uint bits, uint first_slot, vec2 first_px) {
@@ -162,13 +174,16 @@ void blendByLanes(uint bits, uint first_slot, vec2 first_px) {
         const uint splats = min(uint(bitCount(bits)), kNarrow);
         uint lane = 0;
         [[dont_unroll]] do {
-            const BatchSplat splat = BatchSplat(subgroupShuffle(read.reference, lane), subgroupShuffle(read.plane, lane),
-                                                subgroupShuffle(read.depth_form, lane), subgroupShuffle(read.colour, lane));
+            const BatchSplat splat =
+                BatchSplat(subgroupShuffle(read.reference, lane), subgroupShuffle(read.plane, lane),
+                           subgroupShuffle(read.depth_form, lane), subgroupShuffle(read.colour, lane));
             const int sum = sumLanes(blend(splat, first_px));
             const uint slot = subgroupShuffle(own_slot, lane);
             if (sum != 0) { atomicAdd(sums[slot][gl_SubgroupInvocationID], sum); }
             ++lane;
-        } while (lane < splats);
+        }
+        while (lane < splats)
+            ;
         bits = subgroupShuffle(mine & (mine - 1), kNarrow - 1);
     }
 }
@@ -197,7 +212,8 @@ void begin(uvec2 first_pixel) {
 }
 
 void main() [[subgroup_uniform_control_flow]] {
-    const uint thread = kByLanes ? gl_SubgroupID * kNarrow + gl_SubgroupInvocationID : gl_LocalInvocationIndex;
+    const uint thread =
+        kByLanes ? gl_SubgroupID * kNarrow + gl_SubgroupInvocationID : gl_LocalInvocationIndex;
     const uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     const uint cell = thread / kThreadsPerCell, in_cell = thread % kThreadsPerCell;
     const uvec2 size_tiles = pass.eyes.at[pass.eye].size_tiles;

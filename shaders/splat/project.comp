@@ -53,11 +53,15 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
                         small |= bits << (x - box.x + first_bit);
                         tiles += bitCount(bits);
                         x = wordEnd(x, end);
-                    } while (x < end);
+                    }
+                    while (x < end)
+                        ;
                 }
             }
             ++row;
-        } while (row < box.w);
+        }
+        while (row < box.w)
+            ;
     }
     return fits ? bitCount(small) : tiles;
 }
@@ -80,7 +84,8 @@ uint project(uint rank, EyeView eye) {
     uint small;
     const uint tiles = countTiles(outline, box, size_tiles, small);
     if (tiles > 0) {
-        p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
+        p.colour = uvec2(0, p.colour.y & 0xffff0000u) |
+                   packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
         pass.splats.at[firstSplat() + rank] = p;
     }
     // Empty if the splat meets no tile: then no splat is written either.
@@ -103,7 +108,9 @@ void main() [[subgroup_uniform_control_flow]] {
             own_tiles += tiles;
         }
         rank += kGroupSize;
-    } while (rank < end);
+    }
+    while (rank < end)
+        ;
     const uint subgroup_tiles = subgroupAdd(own_tiles);
     if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }
     barrier();
@@ -113,5 +120,7 @@ void main() [[subgroup_uniform_control_flow]] {
         atomicAdd(TARGET.counters.pairs, group_tiles);
     }
     // In one step: with two, the shader takes more registers, which every frame would pay for.
-    if (isLastGroup(pass.pairs)) { sumUpAtOnce(pass.group_sums, gl_NumWorkGroups.z * blocks, pass.pairs, pass.capacity); }
+    if (isLastGroup(pass.pairs)) {
+        sumUpAtOnce(pass.group_sums, gl_NumWorkGroups.z * blocks, pass.pairs, pass.capacity);
+    }
 }

@@ -40,7 +40,8 @@ uint firstPairFrom(uint tile, uint begin) {
 
 // True if the tile has any.
 bool findPairs(uint tile) {
-    const uint number = TARGET.first_tile + tile, begin = firstPairFrom(number, 0), end = firstPairFrom(number + 1, begin);
+    const uint number = TARGET.first_tile + tile, begin = firstPairFrom(number, 0),
+               end = firstPairFrom(number + 1, begin);
     pass.ranges.at[number] = uvec2(begin, end);
     return begin < end;
 }
@@ -55,7 +56,8 @@ uvec2 sizePx() { return pass.eyes.at[gl_WorkGroupID.z].size_px; }
 bool mayBeCoarse(uint tile) {
     const uint columns = sizeTiles().x;
     const uvec2 at = uvec2(tile % columns, tile / columns);
-    return all(lessThanEqual((at + 1) * kTileSize, sizePx())) && seenShareThere(TARGET.counters.gaze, at) <= kCoarseShare;
+    return all(lessThanEqual((at + 1) * kTileSize, sizePx())) &&
+           seenShareThere(TARGET.counters.gaze, at) <= kCoarseShare;
 }
 
 // Every thread of the workgroup must call it.
@@ -67,14 +69,17 @@ void listFull(bool full, bool coarse, uint tile) {
     if (full && !coarse) { Uints(TARGET.full_tiles).at[place] = tile; }
     const uvec4 coarse_lanes = subgroupBallot(full && coarse);
     if (coarse_lanes == uvec4(0)) { return; }
-    if (subgroupElect()) { place = atomicAdd(TARGET.counters.coarse_tiles, subgroupBallotBitCount(coarse_lanes)); }
+    if (subgroupElect()) {
+        place = atomicAdd(TARGET.counters.coarse_tiles, subgroupBallotBitCount(coarse_lanes));
+    }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(coarse_lanes);
     if (full && coarse) { Uints(TARGET.full_tiles).at[sizeTiles().x * sizeTiles().y - 1 - place] = tile; }
 }
 
 void clear(uint tile, uint pixel_of_tile) {
     const uint columns = sizeTiles().x;
-    const uvec2 pixel = uvec2(tile % columns, tile / columns) * kTileSize + uvec2(pixel_of_tile % kTileSize, pixel_of_tile / kTileSize);
+    const uvec2 pixel = uvec2(tile % columns, tile / columns) * kTileSize +
+                        uvec2(pixel_of_tile % kTileSize, pixel_of_tile / kTileSize);
     const uvec2 size_px = sizePx();
     if (any(greaterThanEqual(pixel, size_px))) { return; }
     const uint at = pixel.y * size_px.x + pixel.x;
@@ -93,7 +98,8 @@ void main() [[subgroup_uniform_control_flow]] {
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
     // If the capacity for pairs did not suffice, what the history made stays.
-    const bool is_void = TARGET.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
+    const bool is_void = TARGET.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count ||
+                                                 pass.visible.at[0].needed != pass.visible.at[0].count);
     const bool of_list = isThere(TARGET.tile_list);
     const bool listed = item < (of_list ? TARGET.chosen_tiles.count : tiles) && !is_void;
     const uint tile = !listed ? 0 : of_list ? Uints(TARGET.tile_list).at[item] : item;
@@ -101,7 +107,10 @@ void main() [[subgroup_uniform_control_flow]] {
     if (listed) {
         full = findPairs(tile);
         if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
-        if (leavesHistory() && !full) { HistoryTiles(TARGET.history_tiles).at[tile] = HistoryTile(0, 0, vec4(0), vec4(0), uvec4(0), 0, 0, 0); }
+        if (leavesHistory() && !full) {
+            HistoryTiles(TARGET.history_tiles).at[tile] =
+                HistoryTile(0, 0, vec4(0), vec4(0), uvec4(0), 0, 0, 0);
+        }
     }
     listFull(full, full && TARGET.counters.may_be_coarse != 0 && mayBeCoarse(tile), tile);
     barrier();
@@ -110,13 +119,16 @@ void main() [[subgroup_uniform_control_flow]] {
         [[dont_unroll]] do {
             clear(empty_tiles[cleared / kTilePixels], cleared % kTilePixels);
             cleared += kGroupSize;
-        } while (cleared < empty_count * kTilePixels);
+        }
+        while (cleared < empty_count * kTilePixels)
+            ;
     }
     if (!isLastGroup(pass.pairs) || gl_LocalInvocationIndex != 0) { return; }
     uint groups = 0;
     for (uint target = 0; target < gl_NumWorkGroups.z; ++target) {
         const uint coarse = atomicOr(pass.targets.at[target].counters.coarse_tiles, 0);
-        groups = max(groups, groupsOver(coarse, kCellsPerTile) + atomicOr(pass.targets.at[target].counters.full_tiles, 0));
+        groups = max(groups, groupsOver(coarse, kCellsPerTile) +
+                                 atomicOr(pass.targets.at[target].counters.full_tiles, 0));
     }
     const DispatchSize size = dispatchOver(groups, 1);
     FIRST.counters.per_full_tile = DispatchSize(size.x, size.y, gl_NumWorkGroups.z);

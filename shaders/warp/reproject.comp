@@ -34,12 +34,16 @@ void put(WarpView warp, ivec2 at, uint arrival) {
 // In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower
 // neighbour.
 void putWithin(WarpView warp, uvec2 pixel, Moved here, Moved right, Moved below) {
-    const vec2 u = vec2(1, 0) + (right.move_px - here.move_px), v = vec2(0, 1) + (below.move_px - here.move_px);
+    const vec2 u = vec2(1, 0) + (right.move_px - here.move_px),
+               v = vec2(0, 1) + (below.move_px - here.move_px);
     const float area = u.x * v.y - u.y * v.x;
     const vec2 low = min(vec2(0), u) + min(vec2(0), v), high = max(vec2(0), u) + max(vec2(0), v);
-    if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(warp.gap_px + 2))))) { return; }
+    if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(warp.gap_px + 2))))) {
+        return;
+    }
     // The neighbours cover their own pixels.
-    const ivec2 own = ivec2(floor(here.place_px)), own_right = ivec2(floor(right.place_px)), own_below = ivec2(floor(below.place_px));
+    const ivec2 own = ivec2(floor(here.place_px)), own_right = ivec2(floor(right.place_px)),
+                own_below = ivec2(floor(below.place_px));
     const ivec2 first = ivec2(floor(here.place_px + low)), last = ivec2(floor(here.place_px + high));
     for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
@@ -48,7 +52,8 @@ void putWithin(WarpView warp, uvec2 pixel, Moved here, Moved right, Moved below)
             const vec2 d = vec2(at - ivec2(pixel)) - here.move_px;
             const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
             if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
-            const float inverse_depth = here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth);
+            const float inverse_depth = here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) +
+                                        t * (below.inverse_depth - here.inverse_depth);
             put(warp, at, movingPixel(inverse_depth, 0, max(here.spread, max(right.spread, below.spread))));
         }
     }

@@ -39,7 +39,8 @@ layout(constant_id = 4) const uint kWay = kDoesAny;
 const uint kMaxWidth = 16384;
 const uint kLongestRow = kRowSteps == 0 ? kMaxWidth : kRowSteps * kArrivalsStep;
 const uint kSharedRow = kRowSource == kPlacesGiven ? 0 : kRowSteps * kArrivalsStep;
-const bool kPlaced = kRowSource == kPlacesGiven, kMovesRow = kRowSource == kRowMoved || kRowSource == kWholeRowMoved;
+const bool kPlaced = kRowSource == kPlacesGiven,
+           kMovesRow = kRowSource == kRowMoved || kRowSource == kWholeRowMoved;
 const bool kClasses = kWay == kDoesAny;
 
 shared uint row_arrivals[kSharedRow + 1];
@@ -58,7 +59,10 @@ shared uint open_bits[kPlaced ? 1 : (kMostTiles + 31) / 32];
 shared uint open_count;
 
 bool copiesColours() { return !kPlaced && (kWay == kCopies || (kClasses && pass.copies_colours != 0)); }
-bool predictsErrors() { return !kPlaced && (kWay == kPredicts || (kClasses && pass.first_row == 0 && isThere(uvec2(pass.tile_errors)))); }
+bool predictsErrors() {
+    return !kPlaced &&
+           (kWay == kPredicts || (kClasses && pass.first_row == 0 && isThere(uvec2(pass.tile_errors))));
+}
 bool keepsDepths() { return isThere(uvec2(pass.depths)); }
 bool groupsHoles() { return kClasses && pass.groups_holes != 0; }
 
@@ -96,23 +100,31 @@ void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
         }
         if (kind == kTileHidden) { atomicAdd(hidden_count, 1); }
         tile += kWarpGroup;
-    } while (tile < tiles);
+    }
+    while (tile < tiles)
+        ;
 }
 
 // Writes the pixel; returns its expected squared error.
 float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool open) {
-    const vec2 source_px = movePixel(warp.source_from_target, vec2(resolved.column, at.y) + 0.5, resolved.inverse_depth).xy;
+    const vec2 source_px =
+        movePixel(warp.source_from_target, vec2(resolved.column, at.y) + 0.5, resolved.inverse_depth).xy;
     const ivec2 size = ivec2(warp.size_px);
     const vec2 source = floor(clamp(source_px, vec2(0), vec2(size) - 1)) + 0.5;
     const vec2 disparity = disparityPerInverseDepth(warp.target_from_source, source);
     const float disparity_px = kRectified ? abs(disparity.x) : length(disparity);
     if (movesEvenRows(warp) && (at.y & 1) == 0) { keepPlace(warp, at, resolved, source_px.x); }
-    const Sample found = kRectified ? sampleInRow(source_px.x, at.y * warp.size_px.x, size.x)
-                                    : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
+    const Sample found =
+        kRectified ? sampleInRow(source_px.x, at.y * warp.size_px.x, size.x)
+                   : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
     putPixel(warp, at, resolved.pixel_class, found.colour, resolved.inverse_depth);
     if (!predictsErrors() || (at.y & 1) != 0) { return 0; }
-    if (open && resolved.pixel_class == kHole) { return 2 * holeError(warp, source_px, int(resolved.column) - int(at.x)); }
-    const float variance_px2 = min(uncertaintyOf(row, at.x, warp.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
+    if (open && resolved.pixel_class == kHole) {
+        return 2 * holeError(warp, source_px, int(resolved.column) - int(at.x));
+    }
+    const float variance_px2 =
+        min(uncertaintyOf(row, at.x, warp.size_px.x, resolved) * disparity_px * disparity_px,
+            kMaxSpread * kMaxSpread);
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
@@ -139,7 +151,9 @@ void listOpen(uint slot) {
 void countClass(uint x, uint pixel_class, inout uvec3 classes) {
     if (!kClasses) { return; }
     classes += uvec3(equal(uvec3(pixel_class), uvec3(kCovered, kGap, kHole)));
-    if (pixel_class != kCovered) { atomicOr(tile_classes[x / kTileSize], pixel_class << (2 * (x % kTileSize))); }
+    if (pixel_class != kCovered) {
+        atomicOr(tile_classes[x / kTileSize], pixel_class << (2 * (x % kTileSize)));
+    }
 }
 
 uint errorSteps(float error) { return uint(min(error, kMaxPixelError) * kErrorSteps); }
@@ -151,9 +165,13 @@ void addErrors(uint tile, uint steps, uint lanes) {
     [[dont_unroll]] do {
         const bool own = lanes < kTileSize || gl_SubgroupInvocationID / kTileSize == s;
         const uint sum = subgroupAdd(own ? steps : 0);
-        if (gl_SubgroupInvocationID == s * kTileSize && sum > 0) { atomicAdd(pass.tile_errors.at[tile], sum); }
+        if (gl_SubgroupInvocationID == s * kTileSize && sum > 0) {
+            atomicAdd(pass.tile_errors.at[tile], sum);
+        }
         ++s;
-    } while (s < slots);
+    }
+    while (s < slots)
+        ;
 }
 
 void hideTiles(uint y, uint first_tile, uint width) {
@@ -185,10 +203,14 @@ void main() [[subgroup_uniform_control_flow]] {
         [[dont_unroll]] do {
             if (word < (width + 31) / 32) { arrived_bits[word] = 0; }
             word += kWarpGroup;
-        } while (word < (width + 31) / 32);
+        }
+        while (word < (width + 31) / 32)
+            ;
     }
     if (kClasses) {
-        for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kWarpGroup) { tile_classes[tile] = 0; }
+        for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kWarpGroup) {
+            tile_classes[tile] = 0;
+        }
     }
     if (kMovesRow) {
         const uint end = min(width + 4, kSharedRow + 1);
@@ -196,7 +218,9 @@ void main() [[subgroup_uniform_control_flow]] {
         [[dont_unroll]] do {
             if (x < end) { row_arrivals[x] = 0; }
             x += kWarpGroup;
-        } while (x < end);
+        }
+        while (x < end)
+            ;
     }
     barrier();
     listTiles(first_tile, tiles, pass.counters.at[0].moves != 0, mayBeMean(warp, y));
@@ -231,14 +255,17 @@ void main() [[subgroup_uniform_control_flow]] {
         }
         if (predicts) { addErrors(first_tile + tile, steps, lanes); }
         begin += kWarpGroup;
-    } while (begin < items);
+    }
+    while (begin < items)
+        ;
     if (finds_open) {
         barrier();
         const uint open_items = open_count * kTileSize;
         begin = 0;
         [[dont_unroll]] do {
             const uint item = begin + thread;
-            const uint tile = item < open_items ? moved_tiles[open_tiles[item / kTileSize]] : tiles, x = tile * kTileSize + item % kTileSize;
+            const uint tile = item < open_items ? moved_tiles[open_tiles[item / kTileSize]] : tiles,
+                       x = tile * kTileSize + item % kTileSize;
             uint steps = 0;
             if (x < width && arrivalAt(row, x) == 0) {
                 const Resolved resolved = resolveOpen(warp, row, uvec2(x, y));
@@ -247,16 +274,21 @@ void main() [[subgroup_uniform_control_flow]] {
             }
             if (predicts) { addErrors(first_tile + tile, steps, lanes); }
             begin += kWarpGroup;
-        } while (begin < open_items);
+        }
+        while (begin < open_items)
+            ;
     }
     if (mean_count > 0) { putMeans(y, width, tiles); }
     if (hidden_count > 0) { hideTiles(y, first_tile, width); }
     if (!kClasses) { return; }
     barrier();
-    for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kWarpGroup) { pass.pixel_classes.at[y * tiles + tile] = tile_classes[tile]; }
+    for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kWarpGroup) {
+        pass.pixel_classes.at[y * tiles + tile] = tile_classes[tile];
+    }
     // Counted as if no tile were chosen yet: the even rows count for the odd ones.
     classes *= warp.rows_apart == 1 ? 1 : pass.first_row == 0 ? min(2, warp.size_px.y - y) : 0;
-    const uint covered = subgroupAdd(classes.x), gaps = subgroupAdd(classes.y), holes = subgroupAdd(classes.z);
+    const uint covered = subgroupAdd(classes.x), gaps = subgroupAdd(classes.y),
+               holes = subgroupAdd(classes.z);
     if (subgroupElect()) {
         if (covered > 0) { atomicAdd(pass.counters.at[0].covered_pixels, covered); }
         if (gaps > 0) { atomicAdd(pass.counters.at[0].gap_pixels, gaps); }

@@ -32,7 +32,8 @@ vec2 widthOfPixel(HistoryView view, vec2 wanted_px) {
     const vec3 place = movePixelAnywhere(map, wanted_px, 0);
     const vec2 across = (vec2(1 + map.excess_x.x, map.excess_y.x) - place.xy * map.excess_z.x) / place.z;
     const vec2 down = (vec2(map.excess_x.y, 1 + map.excess_y.y) - place.xy * map.excess_z.y) / place.z;
-    return vec2(abs(down.x) + abs(down.y), abs(across.x) + abs(across.y)) / abs(across.x * down.y - across.y * down.x);
+    return vec2(abs(down.x) + abs(down.y), abs(across.x) + abs(across.y)) /
+           abs(across.x * down.y - across.y * down.x);
 }
 
 // Searches, from a first guess, for where the history shows what is wanted; true if found.
@@ -101,7 +102,8 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
     }
     lost_across *= lostShare(from_first.x - float(base.x));
     lost_down *= lostShare(from_first.y - float(base.y));
-    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down),
+    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down,
+                  dot(lost_across, lost_across) + dot(lost_down, lost_down),
                   dot(across, across) + dot(down, down));
 }
 
@@ -112,7 +114,8 @@ float makePixel(HistoryView view, uvec2 pixel, vec2 depths, out float unseen, ou
     Seen from_near, from_far;
     vec2 near_px, far_px;
     const vec2 disparity_px = disparity(view, wanted_px);
-    const bool is_flat = max(abs(disparity_px.x), abs(disparity_px.y)) * (depths.y - depths.x) <= kHistorySameDepth;
+    const bool is_flat =
+        max(abs(disparity_px.x), abs(disparity_px.y)) * (depths.y - depths.x) <= kHistorySameDepth;
     const vec2 agrees = kHistoryAgrees * max(vec2(1), widthOfPixel(view, wanted_px));
     const bool near_found = search(view, wanted_px, depths.y, agrees, from_near, near_px);
     const bool far_found = search(view, wanted_px, depths.x, agrees, from_far, far_px);
@@ -124,7 +127,8 @@ float makePixel(HistoryView view, uvec2 pixel, vec2 depths, out float unseen, ou
     unseen = found ? 0 : seen.word == 0 || !isInHistory(view, place_px) ? kUnseenError : kUncoveredError;
     // A pixel that blends two depths moves with what stands in front, so that a silhouette keeps its shape.
     if (found && !is_flat) {
-        const vec3 with_front = movePixelAnywhere(view.history_from_now, wanted_px, frontAround(view, place_px));
+        const vec3 with_front =
+            movePixelAnywhere(view.history_from_now, wanted_px, frontAround(view, place_px));
         if (with_front.z > 0 && isInHistory(view, with_front.xy)) {
             const Seen there = look(view, with_front.xy, wanted_px);
             if ((there.word & kSpreadBits) >= kMixedCode) {
@@ -163,7 +167,8 @@ void main() {
     [[dont_unroll]] do {
         const HistoryBlock block = pass.blocks.at[i / kBlockPixels];
         const uint in_block = i % kBlockPixels;
-        const uvec2 pixel = uvec2(block.place & 0xffffu, block.place >> 16) * kBlock + uvec2(in_block % kBlock.x, in_block / kBlock.x);
+        const uvec2 pixel = uvec2(block.place & 0xffffu, block.place >> 16) * kBlock +
+                            uvec2(in_block % kBlock.x, in_block / kBlock.x);
         if (all(lessThan(pixel, view.size_px))) {
             float unseen, squared_gradient;
             const float grown = makePixel(view, pixel, block.inverse_depths, unseen, squared_gradient);
@@ -174,5 +179,7 @@ void main() {
             if (unseen > 0) { atomicAdd(pass.tiles.at[tile].unseen, 1u << (8 * quarter)); }
         }
         i += gl_NumWorkGroups.x * kGroupSize;
-    } while (i < pixels);
+    }
+    while (i < pixels)
+        ;
 }

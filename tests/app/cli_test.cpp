@@ -13,9 +13,11 @@ nlohmann::json reportOf(const Workplace& work, const std::string& folder) {
 SCRIPT(cli, "app/cli") { runProgramScript(); }
 
 TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
-    const std::string float_extension = extensionOf(PictureKind::kFloat), display_extension = extensionOf(PictureKind::kDisplay);
+    const std::string float_extension = extensionOf(PictureKind::kFloat),
+                      display_extension = extensionOf(PictureKind::kDisplay);
     for (const std::string mode : {"mono", "two-pass", "shared", "reproject", "paper", "predicted"}) {
-        const std::string command = fmt::format("render builtin:one-splat --size 40x24 --out a/{0} --mode {0}", mode);
+        const std::string command =
+            fmt::format("render builtin:one-splat --size 40x24 --out a/{0} --mode {0}", mode);
         CHECK(work.go(command, "BINOSPLAT_VALIDATION=1").errors.empty());
         const fs::path folder = work.path / "a" / mode;
         using Names = std::vector<std::string>;
@@ -27,28 +29,35 @@ TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
             // The middle of the disc: opacity 0.8 and colour (0.9, 0.6, 0.3); a little less beside its
             // centre.
             const std::size_t middle = 12 * 40 + 20;
-            CHECK(picture.values[middle * static_cast<std::size_t>(picture.channels)] == doctest::Approx(0.72).epsilon(0.05));
+            CHECK(picture.values[middle * static_cast<std::size_t>(picture.channels)] ==
+                  doctest::Approx(0.72).epsilon(0.05));
             CHECK(display.values[middle * 3] == doctest::Approx(0.72).epsilon(0.05));
         }
         CHECK(fs::exists(folder / ("roi" + display_extension)) == (mode != "mono"));
         const Image depth = readPicture(folder / ("dominant_depth" + float_extension));
         CHECK(these(depth.channels, depth.size_px) == these(1, glm::uvec2(40, 24)));
         const nlohmann::json report = reportOf(work, "a/" + mode);
-        for (const char* key : {"device", "options", "gpu_ms", "gpu_total_ms", "counters", "peak_gpu_bytes", "left_out"}) {
+        for (const char* key :
+             {"device", "options", "gpu_ms", "gpu_total_ms", "counters", "peak_gpu_bytes", "left_out"}) {
             CHECK(report.contains(key));
         }
-        CHECK(these(report["options"]["mode"], report["options"]["size"], report["options"]["gap-px"]) == these(mode, "40x24", 2));
-        CHECK(report["counters"].contains("tiles_patched") == (mode == "reproject" || mode == "paper" || mode == "predicted"));
+        CHECK(these(report["options"]["mode"], report["options"]["size"], report["options"]["gap-px"]) ==
+              these(mode, "40x24", 2));
+        CHECK(report["counters"].contains("tiles_patched") ==
+              (mode == "reproject" || mode == "paper" || mode == "predicted"));
         CHECK(report["gpu_ms"].size() >= 7);
         if (mode == "reproject") { CHECK(report["counters"]["tiles_patched"] == 0); }
         for (const std::string& name : work.files()) { CHECK(name.find("/.") == std::string::npos); }
     }
-    const auto eye = [&](const char* name) { return readPicture(work.path / "a" / "shared" / (name + display_extension)); };
+    const auto eye = [&](const char* name) {
+        return readPicture(work.path / "a" / "shared" / (name + display_extension));
+    };
     for (const std::string layout : {"sbs", "tb"}) {
         work.go("render builtin:one-splat --size 40x24 --mode shared --out both --layout " + layout);
         const Image both = readPicture(work.path / "both" / ("stereo" + display_extension));
         CHECK(both.size_px == (layout == "sbs" ? glm::uvec2(80, 24) : glm::uvec2(40, 48)));
-        CHECK(both.values == (layout == "sbs" ? besideOneAnother : aboveOneAnother)(eye("left"), eye("right")).values);
+        CHECK(both.values ==
+              (layout == "sbs" ? besideOneAnother : aboveOneAnother)(eye("left"), eye("right")).values);
     }
     CHECK_FALSE(fs::exists(work.path / "both" / ("left" + display_extension)));
 }
@@ -59,7 +68,8 @@ TEST_CASE("the program knows nothing of the folder of its sources") {
     CHECK(program.find((kSource / "shaders").string()) == std::string::npos);
 }
 
-TEST_CASE_FIXTURE(AtWork, "every kernel, one for each variant of every shader, is built and listed" * nightly()) {
+TEST_CASE_FIXTURE(AtWork,
+                  "every kernel, one for each variant of every shader, is built and listed" * nightly()) {
     work.go("kernels --out k");
     const auto listed = nlohmann::json::parse(work.bytesOf("k/kernels.json"));
     CHECK_FALSE(listed.at("device").get<std::string>().empty());

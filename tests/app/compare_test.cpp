@@ -37,7 +37,9 @@ struct Pictures : Workplace {
     }
 };
 
-TEST_CASE_FIXTURE(Pictures, "each score is a line with its name, LPIPS comes with its weights, and FLIP sees less from afar") {
+TEST_CASE_FIXTURE(
+    Pictures,
+    "each score is a line with its name, LPIPS comes with its weights, and FLIP sees less from afar") {
     const auto three = scores("a.pfm b.pfm"), four = scores("a.pfm b.pfm --lpips w.bin");
     REQUIRE(three.size() == 3);
     REQUIRE(four.size() == 4);
@@ -69,7 +71,9 @@ TEST_CASE("a value that is not finite is as far off as can be") {
 
 TEST_CASE("of two paths come the mean, the worst frame, and how much more one changes than the other") {
     const Pictures pictures;
-    for (const char* folder : {"still", "flickers", "empty", "short"}) { std::filesystem::create_directory(pictures.path / folder); }
+    for (const char* folder : {"still", "flickers", "empty", "short"}) {
+        std::filesystem::create_directory(pictures.path / folder);
+    }
     const auto write = [&](const std::string& name, float grey) {
         writePfm(pictures.path / (name + ".pfm"), makeFlat({20, 20}, glm::vec3(grey)));
     };
@@ -87,7 +91,8 @@ TEST_CASE("of two paths come the mean, the worst frame, and how much more one ch
     CHECK(scores[1].second == doctest::Approx(-10.0 * std::log10(0.04 / 3.0)));
     CHECK(scores[2].second == doctest::Approx(-10.0 * std::log10(0.04)));
     CHECK(scores[3].second == doctest::Approx(std::sqrt(5.0)));
-    CHECK(pictures.go("compare still still").output == "pictures 6\npsnr inf\npsnr_least inf\nchange 1.000000\n");
+    CHECK(pictures.go("compare still still").output ==
+          "pictures 6\npsnr inf\npsnr_least inf\nchange 1.000000\n");
     write("short/frame_000000_left", 0.5f);
     pictures.checkRefused("compare still short", 1, "short/frame_000001_left.pfm: cannot be read");
     pictures.checkRefused("compare empty still", 1, "empty: has no frames of a path");

@@ -21,13 +21,16 @@ struct Converted : Workplace {
     [[nodiscard]] Scene load(const std::string& name) const { return loadScene((path / name).string()); }
 };
 
-TEST_CASE("a scene goes through every format within what the line says that it loses, and may take the place of its own file") {
+TEST_CASE(
+    "a scene goes through every format within what the line says that it loses, and may take the place of "
+    "its own file") {
     const Converted work;
     CHECK(work.convert("builtin:slanted-wall a.ply").loses == "nothing");
     const Converted::Said spz = work.convert("a.ply b.spz");
     CHECK(spz.written.starts_with("b.spz: 1681 splats (discs), SH degree 0"));
     CHECK(spz.loses ==
-          "positions in steps of 1.53e-05 units, scales of 6 %; colours and opacities of 8 bits; rotations of 10 bits a component; "
+          "positions in steps of 1.53e-05 units, scales of 6 %; colours and opacities of 8 bits; rotations "
+          "of 10 bits a component; "
           "that its splats are discs (render it with --flatten)");
     CHECK(work.convert("b.spz b.spz").loses.find("discs") == std::string::npos);
     static_cast<void>(work.convert("b.spz c.ply"));
@@ -44,7 +47,8 @@ TEST_CASE("a scene goes through every format within what the line says that it l
     const Converted::Said sog = work.convert("a.ply a.sog");
     CHECK(sog.written.starts_with("a.sog: 1681 splats (discs), SH degree 0"));
     CHECK(sog.loses ==
-          "the order of the splats; positions of 16 bits over the logarithm of the scene's extent; scales and colours of 256 values "
+          "the order of the splats; positions of 16 bits over the logarithm of the scene's extent; scales "
+          "and colours of 256 values "
           "each; rotations and opacities of 8 bits");
     static_cast<void>(work.convert("a.sog d.ply"));
     static_cast<void>(work.convert("d.ply d.sog"));
@@ -55,7 +59,8 @@ TEST_CASE("a scene goes through every format within what the line says that it l
 TEST_CASE_FIXTURE(Converted, "a sphere can be cut out of a scene, and keeps all that its splats have") {
     const Scene wall = loadScene("builtin:slanted-wall");
     const glm::dvec3 centre(wall.positions[100]);
-    const Outcome outcome = go(fmt::format("convert builtin:slanted-wall a.ply --crop {},{},{},0.5", centre.x, centre.y, centre.z));
+    const Outcome outcome = go(
+        fmt::format("convert builtin:slanted-wall a.ply --crop {},{},{},0.5", centre.x, centre.y, centre.z));
     const Scene cut = load("a.ply");
     CHECK(outcome.output.find(fmt::format("{} of 1681 splats lie within", cut.size())) != std::string::npos);
     std::size_t next = 0;

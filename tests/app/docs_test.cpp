@@ -15,7 +15,8 @@ const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 
 std::vector<fs::path> documents() {
     std::vector<fs::path> files;
-    for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "third_party/NOTICES.md", "xr/simulated/README.md"}) {
+    for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "third_party/NOTICES.md",
+                             "xr/simulated/README.md"}) {
         files.push_back(kSource / name);
     }
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "docs")) {
@@ -27,7 +28,8 @@ std::vector<fs::path> documents() {
 std::vector<std::string> findAll(const std::string& text, const char* pattern) {
     const std::regex regex(pattern);
     std::vector<std::string> found;
-    for (std::sregex_iterator match(text.begin(), text.end(), regex); match != std::sregex_iterator{}; ++match) {
+    for (std::sregex_iterator match(text.begin(), text.end(), regex); match != std::sregex_iterator{};
+         ++match) {
         found.push_back((*match)[1]);
     }
     return found;
@@ -48,21 +50,24 @@ std::string anchorOf(const std::string& heading) {
 
 bool hasAnchor(const fs::path& document, const std::string& anchor) {
     const std::vector<std::string> headings = findAll(fmt::format("\n{}", textIn(document)), "\n#+ ([^\n]*)");
-    return std::ranges::any_of(headings, [&](const std::string& heading) { return anchorOf(heading) == anchor; });
+    return std::ranges::any_of(headings,
+                               [&](const std::string& heading) { return anchorOf(heading) == anchor; });
 }
 
 // Options of cmake, ctest, doctest, apt-get, compare_frame_logs and other programs whose commands the
 // documents show.
-const std::set<std::string> kForeignOptions{"--preset",    "--build",   "--install", "--config",    "--test-dir",
-                                            "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
-                                            "--help",      "--version", "--success", "--pictures",  "--share",
-                                            "--tolerance", "--ignore",  "--whole",   "--try",       "--test-suite",
-                                            "--cflags",    "--libs"};
+const std::set<std::string> kForeignOptions{
+    "--preset",    "--build",   "--install", "--config",    "--test-dir",
+    "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
+    "--help",      "--version", "--success", "--pictures",  "--share",
+    "--tolerance", "--ignore",  "--whole",   "--try",       "--test-suite",
+    "--cflags",    "--libs"};
 
 bool isOption(const std::string& name) {
     const auto has = [&](const Command& command) {
-        return std::ranges::any_of(optionsOf(command),
-                                   [&](const OptionDescription& option) { return name == fmt::format("--{}", option.text.key); });
+        return std::ranges::any_of(optionsOf(command), [&](const OptionDescription& option) {
+            return name == fmt::format("--{}", option.text.key);
+        });
     };
     return kForeignOptions.contains(name) || std::ranges::any_of(commands(), has);
 }
@@ -104,9 +109,14 @@ std::vector<std::string> wordsOf(const std::string& line) {
 // otherwise.
 std::vector<std::string> callOfProgram(const std::string& line) {
     const std::vector<std::string> words = wordsOf(line);
-    const auto is_variable = [](const std::string& word) { return std::regex_match(word, std::regex("[A-Z_]+=.*")); };
+    const auto is_variable = [](const std::string& word) {
+        return std::regex_match(word, std::regex("[A-Z_]+=.*"));
+    };
     const auto program = std::ranges::find_if_not(words, is_variable);
-    if (program == words.end() || program + 1 == words.end() || fs::path(*program).filename() != "binosplat") { return {}; }
+    if (program == words.end() || program + 1 == words.end() ||
+        fs::path(*program).filename() != "binosplat") {
+        return {};
+    }
     return {program + 1, words.end()};
 }
 
@@ -119,7 +129,9 @@ bool isPlaceholder(const std::string& word) {
 // placeholder.
 std::string wrongCall(std::vector<std::string> call) {
     // Mentioned, not called.
-    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) { return ""; }
+    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) {
+        return "";
+    }
     // A file in place of a command means `view`.
     if (call[0] == "FILE" || call[0].ends_with(".ply")) { call.insert(call.begin(), "view"); }
     std::erase(call, "OPTIONS");
@@ -128,14 +140,17 @@ std::string wrongCall(std::vector<std::string> call) {
         test::parseWords(call);
     } catch (const Error& error) {
         const std::string message = error.what();
-        const bool needs_files = message.starts_with("--view is given without") || std::ranges::any_of(call, isPlaceholder);
-        const bool is_understood = error.code() != ExitCode::kUsage || message.starts_with("--view is given without");
+        const bool needs_files =
+            message.starts_with("--view is given without") || std::ranges::any_of(call, isPlaceholder);
+        const bool is_understood =
+            error.code() != ExitCode::kUsage || message.starts_with("--view is given without");
         return is_understood && needs_files ? "" : message;
     }
     return "";
 }
 
-TEST_CASE("every library that is built with has its row in the notices, and its licence if it is compiled in") {
+TEST_CASE(
+    "every library that is built with has its row in the notices, and its licence if it is compiled in") {
     const std::string notices = textIn(kSource / "third_party" / "NOTICES.md");
     const std::size_t licences = notices.find("\n## Licences of what is compiled in");
     REQUIRE(licences != std::string::npos);
@@ -146,62 +161,81 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
         const std::string link = row.substr(2, row.find(')') - 1);
         CHECK_MESSAGE(notices.find(link, licences) != std::string::npos, "no licence of " << link);
     }
-    const std::vector<std::string> libraries =
-        findAll(textIn(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
+    const std::vector<std::string> libraries = findAll(textIn(kSource / "third_party" / "CMakeLists.txt"),
+                                                       R"(add_library\(third_party_([a-z0-9]+) )");
     CHECK(libraries.size() > 10);
-    for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
+    for (const std::string& library : libraries) {
+        CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library);
+    }
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "fish completes commands, options, choices and files, and zsh can read its completion") {
+TEST_CASE_FIXTURE(test::AtWork,
+                  "fish completes commands, options, choices and files, and zsh can read its completion") {
     if (!test::isInstalled("fish", "fish") || !test::isInstalled("zsh", "zsh")) { return; }
     work.write("complete.fish", documentOf("fish") +
                                     "for words in re 'render --mode pre' 'compare --lp' 'render --path pos'\n"
                                     "    complete -C \"binosplat $words\" | string split -f 1 \\t\nend\n");
     work.write("poses.csv", "x");
-    CHECK(work.runCommand("fish --no-config complete.fish").output == "render\npredicted\n--lpips\nposes.csv\n");
+    CHECK(work.runCommand("fish --no-config complete.fish").output ==
+          "render\npredicted\n--lpips\nposes.csv\n");
     work.write("complete.zsh", documentOf("zsh"));
     const Outcome zsh = work.runCommand("zsh -f -n complete.zsh");
     CHECK(these(zsh.exit_code, zsh.errors) == these(0, ""));
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats and description, and these name the same formats") {
-    if (!test::isInstalled("desktop-file-validate", "desktop-file-utils") || !test::isInstalled("appstreamcli", "appstream")) { return; }
+TEST_CASE_FIXTURE(
+    test::AtWork,
+    "desktops accept the program's entry, formats and description, and these name the same formats") {
+    if (!test::isInstalled("desktop-file-validate", "desktop-file-utils") ||
+        !test::isInstalled("appstreamcli", "appstream")) {
+        return;
+    }
     const std::string base = (kSource / "app" / "linux" / "org.binosplat.viewer").string();
-    for (const std::string& command :
-         {"desktop-file-validate " + base + ".desktop", "appstreamcli validate --no-net " + base + ".metainfo.xml"}) {
+    for (const std::string& command : {"desktop-file-validate " + base + ".desktop",
+                                       "appstreamcli validate --no-net " + base + ".metainfo.xml"}) {
         const Outcome judged = work.runCommand(command);
         CHECK_MESSAGE(judged.exit_code == 0, command << ": " << judged.output << judged.errors);
     }
     std::string opened;  // in the order of the desktop entry
-    for (const std::string& type : findAll(textIn(base + ".metainfo.xml"), "<mediatype>([^<]+)</mediatype>")) { opened += type + ";"; }
+    for (const std::string& type :
+         findAll(textIn(base + ".metainfo.xml"), "<mediatype>([^<]+)</mediatype>")) {
+        opened += type + ";";
+    }
     CHECK(findAll(textIn(base + ".desktop"), "MimeType=(.*)\n") == std::vector<std::string>{opened});
     for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
         CHECK_MESSAGE(opened.find(type + ";") != std::string::npos, type);
     }
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "bash completes commands, options, the values of choices, and files where an option takes one") {
-    work.write("complete",
-               documentOf("bash") +
-                   "\ncomplete_words() { COMPREPLY=(); COMP_CWORD=$1; shift; COMP_WORDS=(\"$@\"); _binosplat; echo \"${COMPREPLY[*]}\"; }\n"
-                   "complete_words 1 binosplat re\n"
-                   "complete_words 3 binosplat render --mode pre\n"
-                   "complete_words 2 binosplat compare --lp\n"
-                   "complete_words 3 binosplat render --path pos\n"
-                   "complete_words 3 binosplat bench --motion pos\n"
-                   "complete_words 3 binosplat render --rate pos\n");
+TEST_CASE_FIXTURE(
+    test::AtWork,
+    "bash completes commands, options, the values of choices, and files where an option takes one") {
+    work.write("complete", documentOf("bash") +
+                               "\ncomplete_words() { COMPREPLY=(); COMP_CWORD=$1; shift; "
+                               "COMP_WORDS=(\"$@\"); _binosplat; echo \"${COMPREPLY[*]}\"; }\n"
+                               "complete_words 1 binosplat re\n"
+                               "complete_words 3 binosplat render --mode pre\n"
+                               "complete_words 2 binosplat compare --lp\n"
+                               "complete_words 3 binosplat render --path pos\n"
+                               "complete_words 3 binosplat bench --motion pos\n"
+                               "complete_words 3 binosplat render --rate pos\n");
     work.write("poses.csv", "x");
-    CHECK(work.runCommand("bash ./complete").output == "render\npredicted\n--lpips\nposes.csv\nposes.csv\n\n");
+    CHECK(work.runCommand("bash ./complete").output ==
+          "render\npredicted\n--lpips\nposes.csv\nposes.csv\n\n");
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "the man page has no line that groff complains about, and the program prints the documents") {
+TEST_CASE_FIXTURE(
+    test::AtWork,
+    "the man page has no line that groff complains about, and the program prints the documents") {
     work.write("page", work.go("document man").output);
     CHECK(work.bytesOf("page") == documentOf("man"));
-    const test::Outcome formatted = work.runCommand("! command -v groff >/dev/null || groff -man -Tascii -ww page");
+    const test::Outcome formatted =
+        work.runCommand("! command -v groff >/dev/null || groff -man -Tascii -ww page");
     CHECK(these(formatted.exit_code, formatted.errors.empty()) == these(0, true));
 }
 
-TEST_CASE("links of the documents lead somewhere, and the options and files that they name exist" * test::nightly()) {
+TEST_CASE("links of the documents lead somewhere, and the options and files that they name exist" *
+          test::nightly()) {
     int links = 0, options = 0, files = 0;
     for (const fs::path& document : documents()) {
         CAPTURE(document);
@@ -219,7 +253,8 @@ TEST_CASE("links of the documents lead somewhere, and the options and files that
             CHECK_MESSAGE(isOption(option), option);
             ++options;
         }
-        for (const std::string& name : findAll(text, R"(`((?:configs|docs|tests|engine|shaders|app|xr|third_party)/[a-zA-Z0-9_/.]+)`)")) {
+        for (const std::string& name : findAll(
+                 text, R"(`((?:configs|docs|tests|engine|shaders|app|xr|third_party)/[a-zA-Z0-9_/.]+)`)")) {
             CHECK_MESSAGE(fs::exists(kSource / name), name);
             ++files;
         }
@@ -231,7 +266,8 @@ TEST_CASE("links of the documents lead somewhere, and the options and files that
 
 TEST_CASE("commands that the documents show are understood" * test::nightly()) {
     int calls = 0, runs = 0;
-    const std::vector<std::string> run_commands = findAll(textIn(kSource / "run"), R"(\n    ([a-z0-9]+)\)\n)");
+    const std::vector<std::string> run_commands =
+        findAll(textIn(kSource / "run"), R"(\n    ([a-z0-9]+)\)\n)");
     REQUIRE(run_commands.size() == 5);
     const std::string presets = textIn(kSource / "CMakePresets.json");
     fs::current_path(kSource);  // configs are named relative to it
@@ -248,10 +284,14 @@ TEST_CASE("commands that the documents show are understood" * test::nightly()) {
                 ++runs;
             }
             for (const std::string& preset : findAll(line, "--preset ([a-z0-9]+)")) {
-                CHECK_MESSAGE(presets.find(fmt::format("\"name\": \"{}\"", preset)) != std::string::npos, line);
+                CHECK_MESSAGE(presets.find(fmt::format("\"name\": \"{}\"", preset)) != std::string::npos,
+                              line);
             }
             for (const std::string& word : words) {
-                if (!std::regex_match(word, std::regex("(configs|tests|third_party|xr|docs)/[a-zA-Z0-9_./-]+"))) { continue; }
+                if (!std::regex_match(word,
+                                      std::regex("(configs|tests|third_party|xr|docs)/[a-zA-Z0-9_./-]+"))) {
+                    continue;
+                }
                 CHECK_MESSAGE(fs::exists(kSource / word), line);
             }
         }

@@ -27,15 +27,15 @@ SCRIPT(fault, "app/fault") {
     const Machine machine;
     const std::string render = "render builtin:slanted-wall --size 64x48 --out out/pictures --mode ";
     ScriptHost host = programIn(machine);
-    host.names.merge(
-        std::map<std::string, std::string>{{"MONO", render + "mono"},
-                                           {"SHARED", render + "shared"},
-                                           {"BENCH", "bench builtin:slanted-wall --size 64x48 --out out/tables --config one.toml"},
-                                           {"LOST", "the device was lost"},
-                                           {"FULL", "MiB of device memory, which is more than it has free"},
-                                           {"STOPPED", "stopped by SIGINT, nothing was written"},
-                                           {"ENDED", "stopped by SIGTERM, nothing was written"},
-                                           {"KEPT", "files full.toml one.toml small.script"}});
+    host.names.merge(std::map<std::string, std::string>{
+        {"MONO", render + "mono"},
+        {"SHARED", render + "shared"},
+        {"BENCH", "bench builtin:slanted-wall --size 64x48 --out out/tables --config one.toml"},
+        {"LOST", "the device was lost"},
+        {"FULL", "MiB of device memory, which is more than it has free"},
+        {"STOPPED", "stopped by SIGINT, nothing was written"},
+        {"ENDED", "stopped by SIGTERM, nothing was written"},
+        {"KEPT", "files full.toml one.toml small.script"}});
     runScript(host);
 }
 
@@ -45,7 +45,8 @@ SCRIPT(fault, "app/fault") {
 // after it; empty if there was no Nth allocation.
 std::string loadWithout(const Machine& machine, int number) {
     CAPTURE(number);
-    const Outcome outcome = machine.runCommand(fault("allocate", number, "no-device-memory-once") + " '" BINOSPLAT_LIBRARY_USER "'");
+    const Outcome outcome = machine.runCommand(fault("allocate", number, "no-device-memory-once") +
+                                               " '" BINOSPLAT_LIBRARY_USER "'");
     INFO(outcome.output << outcome.errors);
     if (outcome.exit_code == 1) { return ""; }
     REQUIRE(outcome.exit_code == 0);
@@ -53,7 +54,9 @@ std::string loadWithout(const Machine& machine, int number) {
     return outcome.output;
 }
 
-TEST_CASE_FIXTURE(Machine, "the library draws a small scene as near as it is small, and one far from 0 where its file has it") {
+TEST_CASE_FIXTURE(
+    Machine,
+    "the library draws a small scene as near as it is small, and one far from 0 where its file has it") {
     struct Seen {
         double share = 0.0;
         glm::dvec3 from{0.0};
@@ -82,7 +85,8 @@ TEST_CASE_FIXTURE(Machine, "the library draws a small scene as near as it is sma
     CHECK(glm::distance(far.from - away, large.from) < 0.01);
 }
 
-TEST_CASE("a scene for which the library's frame finds no room leaves the scene before, and renders it as before") {
+TEST_CASE(
+    "a scene for which the library's frame finds no room leaves the scene before, and renders it as before") {
     CHECK(loadWithout(Machine(), 32).find("visibility needs ") != std::string::npos);
 }
 
@@ -99,8 +103,11 @@ TEST_CASE("wherever the memory for it ends it does so" * nightly()) {
 #endif
 
 #ifdef BINOSPLAT_OPENXR
-TEST_CASE_FIXTURE(Machine, "faults end the viewer in its own line, behind what the runtime says, and SIGTERM ends it as its wearer would") {
-    const std::string view = "view builtin:slanted-wall --mode mono --simulate small.script --load-first --out seen";
+TEST_CASE_FIXTURE(Machine,
+                  "faults end the viewer in its own line, behind what the runtime says, and SIGTERM ends it "
+                  "as its wearer would") {
+    const std::string view =
+        "view builtin:slanted-wall --mode mono --simulate small.script --load-first --out seen";
     const std::string no_display = "DISPLAY= WAYLAND_DISPLAY= ";
     const auto checkEnds = [&](const std::string& environment, int exit_code, const std::string& part) {
         CAPTURE(environment);
@@ -121,7 +128,8 @@ TEST_CASE_FIXTURE(Machine, "faults end the viewer in its own line, behind what t
     // The scene is uploaded beside the first frames, so the call may belong to either.
     checkEnds(fault("submit", 2, "lost"), 3, "DeviceLost");
     checkEnds(fault("wait", 12, "lost"), 3, "DeviceLost");
-    checkEnds(fault("allocate", 1, "no-device-memory"), 1, "not enough memory for this scene and picture size");
+    checkEnds(fault("allocate", 1, "no-device-memory"), 1,
+              "not enough memory for this scene and picture size");
     checkEnds("ulimit -f 1;", 3, "frames.jsonl: cannot be written");
     const Outcome ended = go(view, no_display + fault("submit", 30, "SIGTERM"));
     CHECK(ended.output.find("the runtime asked for the end") != std::string::npos);

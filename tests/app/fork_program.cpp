@@ -25,14 +25,17 @@ namespace binosplat::test {
 namespace {
 
 std::ptrdiff_t countThreads() {
-    return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
+    return std::distance(std::filesystem::directory_iterator("/proc/self/task"),
+                         std::filesystem::directory_iterator());
 }
 // Threads that libraries start when they are loaded (log4cplus, which comes with OpenImageIO) and never need
 // again. A fork does not have them.
 const std::ptrdiff_t threads_of_libraries = countThreads();
 
 // The words as the shell splits them; false if the text needs a shell: redirections, pipes, jobs.
-bool areWords(const std::string& text, wordexp_t& words) { return wordexp(text.c_str(), &words, WRDE_NOCMD | WRDE_UNDEF) == 0; }
+bool areWords(const std::string& text, wordexp_t& words) {
+    return wordexp(text.c_str(), &words, WRDE_NOCMD | WRDE_UNDEF) == 0;
+}
 
 bool isOneCommand(const std::string& text) { return text.find_first_of("|&;<>(){}`\n") == std::string::npos; }
 
@@ -56,16 +59,20 @@ void redirect(int descriptor, const std::filesystem::path& file) {
     _exit(code);  // `exit` would wait for the libraries' threads
 }
 
-int runInFork(const std::string& arguments, const std::string& environment, const std::filesystem::path& folder,
-              const std::filesystem::path& outputs) {
-    if (countThreads() != threads_of_libraries || !isOneCommand(arguments) || !isOneCommand(environment)) { return -1; }
+int runInFork(const std::string& arguments, const std::string& environment,
+              const std::filesystem::path& folder, const std::filesystem::path& outputs) {
+    if (countThreads() != threads_of_libraries || !isOneCommand(arguments) || !isOneCommand(environment)) {
+        return -1;
+    }
     std::cout << std::flush;
     std::fflush(nullptr);
     const pid_t child = fork();
     if (child < 0) { return -1; }
     if (child == 0) {
         // Instead of the test's handlers.
-        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) { std::signal(signal, SIG_DFL); }
+        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) {
+            std::signal(signal, SIG_DFL);
+        }
         redirect(STDOUT_FILENO, outputs / "output");
         redirect(STDERR_FILENO, outputs / "errors");
         std::filesystem::current_path(folder);
@@ -81,8 +88,8 @@ int runInFork(const std::string& arguments, const std::string& environment, cons
 // long as a small frame. Drivers and layers are found as the loaders find them, by their manifests.
 bool loadAhead() {
     dlopen("libVkLayer_khronos_validation.so", RTLD_NOW | RTLD_NODELETE);
-    for (const char* folder :
-         {"/usr/share/vulkan/icd.d", "/usr/share/vulkan/implicit_layer.d", "/usr/share/openxr/1/api_layers/explicit.d"}) {
+    for (const char* folder : {"/usr/share/vulkan/icd.d", "/usr/share/vulkan/implicit_layer.d",
+                               "/usr/share/openxr/1/api_layers/explicit.d"}) {
         std::error_code missing;
         for (const auto& manifest : std::filesystem::directory_iterator(folder, missing)) {
             std::ifstream file(manifest.path());

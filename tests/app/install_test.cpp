@@ -13,10 +13,12 @@ void checkLinks(const fs::path& documents) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(documents)) {
         if (entry.path().extension() != ".md") { continue; }
         const std::string text = textIn(entry.path());
-        for (std::sregex_iterator match(text.begin(), text.end(), link); match != std::sregex_iterator{}; ++match) {
+        for (std::sregex_iterator match(text.begin(), text.end(), link); match != std::sregex_iterator{};
+             ++match) {
             const std::string target = (*match)[1];
             if (target.starts_with("http")) { continue; }
-            CHECK_MESSAGE(fs::exists(entry.path().parent_path() / target), entry.path().string() << ": " << target);
+            CHECK_MESSAGE(fs::exists(entry.path().parent_path() / target), entry.path().string()
+                                                                               << ": " << target);
             ++links;
         }
     }
@@ -27,7 +29,8 @@ void checkLinks(const fs::path& documents) {
 void checkFetched(const Workplace& work, const std::string& scene) {
     const WebServer server(WebPages{{"/" + scene, work.bytesOf(scene)}});
     const Outcome fetched =
-        work.runCommand(fmt::format("mkdir far && cd far && no_proxy=127.0.0.1 XDG_CACHE_HOME='{}' ../build/stereo {} 0 -1.5 0.5 0 -1.2 3",
+        work.runCommand(fmt::format("mkdir far && cd far && no_proxy=127.0.0.1 XDG_CACHE_HOME='{}' "
+                                    "../build/stereo {} 0 -1.5 0.5 0 -1.2 3",
                                     (work.base / "caches").string(), server.at("/" + scene)));
     INFO(fetched.errors);
 #ifdef BINOSPLAT_WEB_TESTS
@@ -42,13 +45,17 @@ void checkFetched(const Workplace& work, const std::string& scene) {
 SCRIPT(install, "app/install") {
     const Workplace work;
     ScriptHost host = programIn(work);
-    const std::string prefix = (work.base / "prefix").string(), install = "'" BINOSPLAT_CMAKE "' --install '" BINOSPLAT_BUILD "' ";
-    host.names.merge(std::map<std::string, std::string>{{"CMAKE", BINOSPLAT_CMAKE},
-                                                        {"BUILD", BINOSPLAT_BUILD},
-                                                        {"PREFIX", prefix},
-                                                        {"INSTALL", install + "--prefix " + prefix + " --component"}});
+    const std::string prefix = (work.base / "prefix").string(),
+                      install = "'" BINOSPLAT_CMAKE "' --install '" BINOSPLAT_BUILD "' ";
+    host.names.merge(
+        std::map<std::string, std::string>{{"CMAKE", BINOSPLAT_CMAKE},
+                                           {"BUILD", BINOSPLAT_BUILD},
+                                           {"PREFIX", prefix},
+                                           {"INSTALL", install + "--prefix " + prefix + " --component"}});
     const bool has_other = fs::exists("/usr/share/openxr/1/binosplat_simulated_runtime.json");
-    if (host.features.contains("openxr")) { host.features.insert(has_other ? "openxr-twice" : "openxr-alone"); }
+    if (host.features.contains("openxr")) {
+        host.features.insert(has_other ? "openxr-twice" : "openxr-alone");
+    }
     host.verbs["links"] = checkLinks;
     host.verbs["fetch"] = [&](const std::string& scene) { checkFetched(work, scene); };
     runScript(host);

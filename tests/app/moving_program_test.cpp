@@ -10,7 +10,8 @@ SCRIPT(moving_program, "app/moving_program") {
     std::string still = "timestamp_us,x,y,z,qx,qy,qz,qw\n";
     for (int i = 0; i <= 4; ++i) { still += fmt::format("{},0,0,0,0,0,0,1\n", 100000 * i); }
     work.write("still.csv", still);
-    const std::string place = "--size 64x64 --eye 0.4,-1.6,0.6 --look 0,-1.1,4 --up 0,-1,0 ", camera = place + "--mode shared ";
+    const std::string place = "--size 64x64 --eye 0.4,-1.6,0.6 --look 0,-1.1,4 --up 0,-1,0 ",
+                      camera = place + "--mode shared ";
     ScriptHost host = programIn(work);
     host.names["CAMERA"] = camera;
     host.names["PATH"] = camera + "--path still.csv --rate 10";

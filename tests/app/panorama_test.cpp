@@ -21,7 +21,9 @@ glm::vec3 colourAt(const Image& image, std::size_t x, std::size_t y) {
 double stepAt(const Image& a, const Image& b, std::size_t shift, std::size_t column) {
     double sum = 0.0;
     for (std::size_t y = 0; y < a.size_px.y; ++y) {
-        const auto differs = [&](std::size_t x) { return colourAt(a, x % a.size_px.x, y) - colourAt(b, (x + shift) % b.size_px.x, y); };
+        const auto differs = [&](std::size_t x) {
+            return colourAt(a, x % a.size_px.x, y) - colourAt(b, (x + shift) % b.size_px.x, y);
+        };
         const glm::vec3 step = differs(column + 1) - differs(column);
         sum += static_cast<double>(glm::dot(step, step)) / 3.0;
     }
@@ -35,39 +37,53 @@ std::string after(const std::string& bytes, const std::string& letters) {
 }
 std::uint32_t numberIn(const std::string& bytes, std::size_t at) {
     std::uint32_t value = 0;
-    for (std::size_t i = at; i < at + 4; ++i) { value = value << 8 | static_cast<unsigned char>(bytes.at(i)); }
+    for (std::size_t i = at; i < at + 4; ++i) {
+        value = value << 8 | static_cast<unsigned char>(bytes.at(i));
+    }
     return value;
 }
 
 TEST_CASE("what the faces show of a direction, the panorama shows there, also where they meet") {
-    const auto colourOf = [](const glm::dvec3& direction) { return glm::vec4(0.5 + 0.4 * glm::normalize(direction), 1.0); };
+    const auto colourOf = [](const glm::dvec3& direction) {
+        return glm::vec4(0.5 + 0.4 * glm::normalize(direction), 1.0);
+    };
     for (const double width_rad : {kPi, 2.0 * kPi}) {
-        const Panorama panorama{width_rad, {static_cast<std::uint32_t>(std::lround(64.0 * width_rad / kPi)), 64}};
+        const Panorama panorama{width_rad,
+                                {static_cast<std::uint32_t>(std::lround(64.0 * width_rad / kPi)), 64}};
         std::vector<Image> faces;
         for (const Eye& face : facesOf(panorama, {})) {
             Image& image = faces.emplace_back(Image{face.size_px, 4, {}});
             for (std::size_t i = 0; i < image.pixelCount(); ++i) {
-                const glm::dvec2 at(static_cast<double>(i % face.size_px.x) + 0.5, static_cast<double>(i / face.size_px.x) + 0.5);
-                const glm::dvec2 slope = (at - glm::dvec2(face.intrinsics.cx, face.intrinsics.cy)) / face.intrinsics.fx;
-                const glm::vec4 colour = colourOf(face.world_from_camera.orientation * glm::dvec3(slope, 1.0));
+                const glm::dvec2 at(static_cast<double>(i % face.size_px.x) + 0.5,
+                                    static_cast<double>(i / face.size_px.x) + 0.5);
+                const glm::dvec2 slope =
+                    (at - glm::dvec2(face.intrinsics.cx, face.intrinsics.cy)) / face.intrinsics.fx;
+                const glm::vec4 colour =
+                    colourOf(face.world_from_camera.orientation * glm::dvec3(slope, 1.0));
                 for (int c = 0; c < 4; ++c) { image.values.push_back(colour[c]); }
             }
         }
         const Image seen = panoramaOf(panorama, faces);
         float worst = 0.0f;
         for (std::size_t i = 0; i < seen.pixelCount(); ++i) {
-            const double right = ((static_cast<double>(i % seen.size_px.x) + 0.5) / seen.size_px.x - 0.5) * width_rad;
-            const double down = ((static_cast<double>(i / seen.size_px.x) + 0.5) / seen.size_px.y - 0.5) * kPi;
-            const glm::vec4 expected = colourOf({std::sin(right) * std::cos(down), std::sin(down), std::cos(right) * std::cos(down)});
+            const double right =
+                ((static_cast<double>(i % seen.size_px.x) + 0.5) / seen.size_px.x - 0.5) * width_rad;
+            const double down =
+                ((static_cast<double>(i / seen.size_px.x) + 0.5) / seen.size_px.y - 0.5) * kPi;
+            const glm::vec4 expected = colourOf(
+                {std::sin(right) * std::cos(down), std::sin(down), std::cos(right) * std::cos(down)});
             for (int c = 0; c < 4; ++c) {
-                worst = std::max(worst, std::abs(seen.values[4 * i + static_cast<std::size_t>(c)] - expected[c]));
+                worst =
+                    std::max(worst, std::abs(seen.values[4 * i + static_cast<std::size_t>(c)] - expected[c]));
             }
         }
         CHECK(worst < 5e-4f);  // the mean over a pixel is not the value at its middle
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "where faces of a picture of all around meet, nothing stands out against the same picture made of others") {
+TEST_CASE_FIXTURE(AtWork,
+                  "where faces of a picture of all around meet, nothing stands out against the same picture "
+                  "made of others") {
     const auto around = [&](const std::string& look) {
         work.go("render builtin:atelier --projection 360 --size 256x128 " + kPlace + look + " --out around");
         return readPicture(work.path / "around/mono" BINOSPLAT_FLOAT_EXTENSION);
@@ -87,9 +103,13 @@ TEST_CASE_FIXTURE(AtWork, "where faces of a picture of all around meet, nothing 
 
 TEST_CASE_FIXTURE(AtWork, "each direction is where a flat picture has it, for each eye") {
     const std::string look = "--look 0.02,-1.5,2.2 --ipd 0.3 ";
-    work.go("render builtin:atelier --projection vr180 --layout separate --size 256x256 --out around " + kPlace + look);
-    work.go("render builtin:atelier --mode shared --order distance --fov-x 90 --size 512x512 --out flat " + kPlace + look);
-    const auto picture = [&](const std::string& name) { return readPicture(work.path / (name + BINOSPLAT_FLOAT_EXTENSION)); };
+    work.go("render builtin:atelier --projection vr180 --layout separate --size 256x256 --out around " +
+            kPlace + look);
+    work.go("render builtin:atelier --mode shared --order distance --fov-x 90 --size 512x512 --out flat " +
+            kPlace + look);
+    const auto picture = [&](const std::string& name) {
+        return readPicture(work.path / (name + BINOSPLAT_FLOAT_EXTENSION));
+    };
     const auto differ = [&](const std::string& around, const std::string& flat) {
         const Image a = picture("around/" + around), f = picture("flat/" + flat);
         double sum = 0.0, count = 0.0;
@@ -102,8 +122,10 @@ TEST_CASE_FIXTURE(AtWork, "each direction is where a flat picture has it, for ea
                 const glm::dvec2 place = glm::floor(256.0 * at + 256.0 - 0.5);
                 glm::vec3 flat_colour(0.0f);
                 for (int i = 0; i < 4; ++i) {
-                    flat_colour += 0.25f * colourAt(f, static_cast<std::size_t>(place.x) + static_cast<std::size_t>(i % 2),
-                                                    static_cast<std::size_t>(place.y) + static_cast<std::size_t>(i / 2));
+                    flat_colour +=
+                        0.25f * colourAt(f,
+                                         static_cast<std::size_t>(place.x) + static_cast<std::size_t>(i % 2),
+                                         static_cast<std::size_t>(place.y) + static_cast<std::size_t>(i / 2));
                 }
                 const glm::vec3 difference = colourAt(a, x, y) - flat_colour;
                 sum += glm::dot(difference, difference) / 3.0, count += 1.0;
@@ -124,7 +146,8 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
     const std::string png = work.bytesOf("out/mono.png");
     const std::string text = after(png, "iTXt");
     CHECK(text.starts_with("XML:com.adobe.xmp" + std::string(5, '\0')));
-    for (const char* said : {"ProjectionType=\"equirectangular\"", "FullPanoWidthPixels=\"64\"", "CroppedAreaLeftPixels=\"0\""}) {
+    for (const char* said : {"ProjectionType=\"equirectangular\"", "FullPanoWidthPixels=\"64\"",
+                             "CroppedAreaLeftPixels=\"0\""}) {
         CHECK(text.find(said) != std::string::npos);
     }
     CHECK(readPicture(work.path / "out/mono.png").size_px == glm::uvec2(64, 32));
@@ -138,7 +161,8 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
         const std::size_t third = second + 2 + numberIn(jpg, second) % 65536;
         CHECK(jpg.substr(third, 1) == "\xff");
         CHECK(jpg.substr(second, third - second).find("FullPanoWidthPixels=\"64\"") != std::string::npos);
-        CHECK(compare(readPicture(work.path / "out/mono.jpg"), readPicture(work.path / "out/mono.png")).psnrDb() > 35.0);
+        CHECK(compare(readPicture(work.path / "out/mono.jpg"), readPicture(work.path / "out/mono.png"))
+                  .psnrDb() > 35.0);
     }
 #ifdef BINOSPLAT_OPENIMAGEIO
     CHECK(work.holds("out/mono.jpg"));
@@ -146,7 +170,8 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
 #endif
     work.checkRefused("render builtin:one-splat --projection 360 --size 64x64 --out no", 1,
                       "--size is 64x64, must be twice as wide as high");
-    work.checkRefused("render builtin:one-splat --projection vr180 --mode paper --out no", 2, "its mode is shared");
+    work.checkRefused("render builtin:one-splat --projection vr180 --mode paper --out no", 2,
+                      "its mode is shared");
 }
 
 // A box of an MP4.
@@ -158,32 +183,43 @@ std::string box(const std::string& type, const std::string& content) {
 }
 // The parts of a film's index, as ffmpeg writes it, that matter here.
 std::string indexOf(const std::string& tags) {
-    const std::string picture = std::string(78, 'p') + box("avcC", "decoder") + tags + box("pasp", "12345678");
-    const std::string table = box("stsd", std::string(7, '\0') + '\1' + box("avc1", picture)) + box("stts", "times");
-    return box("moov", box("mvhd", "m") + box("trak", box("tkhd", "t") + box("mdia", box("mdhd", "d") + box("minf", box("stbl", table)))) +
+    const std::string picture =
+        std::string(78, 'p') + box("avcC", "decoder") + tags + box("pasp", "12345678");
+    const std::string table =
+        box("stsd", std::string(7, '\0') + '\1' + box("avc1", picture)) + box("stts", "times");
+    return box("moov", box("mvhd", "m") +
+                           box("trak", box("tkhd", "t") +
+                                           box("mdia", box("mdhd", "d") + box("minf", box("stbl", table)))) +
                            box("udta", "u"));
 }
 
-TEST_CASE("the boxes that say how a film was projected lie after the decoder's, and all boxes around them grow by as much") {
+TEST_CASE(
+    "the boxes that say how a film was projected lie after the decoder's, and all boxes around them grow by "
+    "as much") {
     const std::string none(4, '\0'), quarter = "\x40" + std::string(3, '\0');
     const auto sphere = [&](const std::string& side) {
         return box("sv3d", box("svhd", none + "binosplat" + '\0') +
-                               box("proj", box("prhd", std::string(16, '\0')) + box("equi", none + none + none + side + side)));
+                               box("proj", box("prhd", std::string(16, '\0')) +
+                                               box("equi", none + none + none + side + side)));
     };
-    CHECK(withFilmTags(indexOf(""), {FilmEyes::kSideBySide, kPi}) == indexOf(box("st3d", none + '\2') + sphere(quarter)));
+    CHECK(withFilmTags(indexOf(""), {FilmEyes::kSideBySide, kPi}) ==
+          indexOf(box("st3d", none + '\2') + sphere(quarter)));
     CHECK(withFilmTags(indexOf(""), {FilmEyes::kOne, 2.0 * kPi}) == indexOf(sphere(none)));
     CHECK(withFilmTags(indexOf(""), {FilmEyes::kTopBottom, {}}) == indexOf(box("st3d", none + '\1')));
     CHECK(!errorOf([] { (void)withFilmTags(box("moov", "none"), {}); }).empty());
 }
 
 TEST_CASE_FIXTURE(AtWork,
-                  "a path becomes a film, at its rate and with both eyes in each picture; without ffmpeg one line says what is missing") {
-    work.write("poses.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.04,0.01,0,0,0,0,0,1\n0.08,0.02,0,0,0,0,0,1\n");
+                  "a path becomes a film, at its rate and with both eyes in each picture; without ffmpeg one "
+                  "line says what is missing") {
+    work.write("poses.csv",
+               "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.04,0.01,0,0,0,0,0,1\n0.08,0.02,0,0,0,0,0,1\n");
     // A stand-in for the encoder: it leaves a film, and records how it was called.
     work.write("film", box("ftyp", "isom") + box("mdat", "pictures") + indexOf(""));
     std::filesystem::create_directories(work.path / "bin");
     const std::string here = work.path.string();
-    work.write("bin/ffmpeg", "#!/bin/sh\necho \"$@\" >" + here + "/called\nfor film; do :; done\n[ \"$film\" = -version ] || cp " + here +
+    work.write("bin/ffmpeg", "#!/bin/sh\necho \"$@\" >" + here +
+                                 "/called\nfor film; do :; done\n[ \"$film\" = -version ] || cp " + here +
                                  "/film \"$film\"\n");
     std::filesystem::permissions(work.path / "bin/ffmpeg", std::filesystem::perms::owner_all);
     const std::string film = "render builtin:one-splat --path poses.csv --size 32x32 --video ";
@@ -194,8 +230,9 @@ TEST_CASE_FIXTURE(AtWork,
     const std::string bytes = work.bytesOf("out/video.mp4");
     CHECK(numberIn(after(bytes, "equi"), 12) == 0x40000000u);
     CHECK(after(bytes, "st3d").at(4) == '\2');
-    CHECK(readPicture(work.path / (std::string("out/frame_000002_stereo") + extensionOf(PictureKind::kDisplay))).size_px ==
-          glm::uvec2(64, 32));
+    CHECK(
+        readPicture(work.path / (std::string("out/frame_000002_stereo") + extensionOf(PictureKind::kDisplay)))
+            .size_px == glm::uvec2(64, 32));
     work.checkRefused(film + "--out no", 1, "ffmpeg", "PATH=" + here);
     CHECK(!work.holds("no"));
 }

@@ -8,13 +8,16 @@ const double kPi = std::acos(-1.0);
 const std::string kScene = "render builtin:fence --size 64x48 --up 0,-1,0 --fov-x 60 ";
 const std::string kRender = kScene + "--eye 0,0,0 --look 0,0,3 ";
 // A tenth of a metre to the right and 20 degrees to the left in half a second, and back again in the next.
-const std::string kPoses = fmt::format("time_s,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,1\n5.5,0.1,0,0,0,{:.9f},0,{:.9f}\n6.5,0,0,0,0,0,0,1\n",
-                                       std::sin(kPi / 18.0), std::cos(kPi / 18.0));
+const std::string kPoses = fmt::format(
+    "time_s,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,1\n5.5,0.1,0,0,0,{:.9f},0,{:.9f}\n6.5,0,0,0,0,0,0,1\n",
+    std::sin(kPi / 18.0), std::cos(kPi / 18.0));
 const std::string kExtension = extensionOf(PictureKind::kDisplay);
 
 struct Way : Workplace {
     Way() { write("poses.csv", kPoses); }
-    [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(bytesOf("frames/report.json")); }
+    [[nodiscard]] nlohmann::json report() const {
+        return nlohmann::json::parse(bytesOf("frames/report.json"));
+    }
 };
 
 // frame NUMBER TIME X SINE: the time of one eye's frame, its offset to the side, and the sine of half its
@@ -27,10 +30,12 @@ SCRIPT(path, "app/path") {
     host.verbs["count"] = [&](const std::string& count) { CHECK(way.files().size() == std::stoul(count)); };
     host.verbs["frame"] = [&](const std::string& line) {
         const std::vector<std::string> words = wordsIn(line);
-        const nlohmann::json frame = way.report().at("frames").at(std::stoul(words.at(0))), eye = frame.at("eyes").at("mono");
+        const nlohmann::json frame = way.report().at("frames").at(std::stoul(words.at(0))),
+                             eye = frame.at("eyes").at("mono");
         CHECK(frame.at("time_s") == doctest::Approx(std::stod(words.at(1))));
         CHECK(eye.at("position").at(0) == doctest::Approx(std::stod(words.at(2))));
-        CHECK(std::abs(eye.at("orientation_wxyz").at(2).get<double>()) == doctest::Approx(std::stod(words.at(3))));
+        CHECK(std::abs(eye.at("orientation_wxyz").at(2).get<double>()) ==
+              doctest::Approx(std::stod(words.at(3))));
     };
     runScript(host);
 }
@@ -50,10 +55,13 @@ TEST_CASE_FIXTURE(Way, "frames that were finished before a signal are kept, and 
     std::size_t kept = 0;
     while (holds(fmt::format("frames/frame_{:06}_right{}", kept, kExtension))) { ++kept; }
     CHECK(kept > 0);
-    CHECK(stopped.errors.find(fmt::format("{} of 7 frames are in frames, --resume continues", kept)) != std::string::npos);
+    CHECK(stopped.errors.find(fmt::format("{} of 7 frames are in frames, --resume continues", kept)) !=
+          std::string::npos);
     CHECK(these(files().contains("frames/report.json"), report().at("frames").size()) == these(true, kept));
-    checkRefused("render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode shared --rate 4 --resume --out frames",
-                 1, "must be 32x32 as the frames that --resume adds");
+    checkRefused(
+        "render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode shared --rate 4 "
+        "--resume --out frames",
+        1, "must be 32x32 as the frames that --resume adds");
     go(walk + "frames --resume");
     CHECK(report().at("frames").size() == 7 - kept);
     for (int frame = 0; frame < 7; ++frame) {

@@ -8,9 +8,13 @@
 namespace binosplat::test {
 
 inline ScriptHost programIn(const Workplace& work) {
-    const std::string layer = "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=";
-    const std::string no_driver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
-    ScriptHost host{[&](const std::string& words, const std::string& environment) { return work.run(words, environment); },
+    const std::string layer = "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                              "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=";
+    const std::string no_driver =
+        "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
+    ScriptHost host{[&](const std::string& words, const std::string& environment) {
+                        return work.run(words, environment);
+                    },
                     work.path,
                     "binosplat: ",
                     {{"SOURCE", BINOSPLAT_SOURCE_DIR},
@@ -32,7 +36,9 @@ inline ScriptHost programIn(const Workplace& work) {
     // psnr FIRST SECOND > DB, of pictures as they are displayed.
     host.verbs["psnr"] = [&](const std::string& line) {
         const std::vector<std::string> words = wordsIn(line);
-        const auto picture = [&](std::size_t i) { return readPicture(work.path / (words.at(i) + extensionOf(PictureKind::kDisplay))); };
+        const auto picture = [&](std::size_t i) {
+            return readPicture(work.path / (words.at(i) + extensionOf(PictureKind::kDisplay)));
+        };
         const double db = compare(picture(0), picture(1)).psnrDb(), bound_db = std::stod(words.at(3));
         CAPTURE(db);
         CHECK((words[2] == ">" ? db > bound_db : db < bound_db));

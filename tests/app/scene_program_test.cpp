@@ -25,20 +25,24 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
     work.write("a.ply", ply.bytes());
     const std::string info = work.go("info a.ply").output;
     for (const char* row :
-         {"axes               the file does not say; taken as a training's: x right, y down, z front; right-handed\n",
+         {"axes               the file does not say; taken as a training's: x right, y down, z front; "
+          "right-handed\n",
           "colour space       the file does not say; taken as a training's: display-encoded (sRGB)\n",
           "  0.03 %  1 splats: opacity under 1/255, never seen\n", "  0.03 %  1 splats: over 99 % opaque\n",
-          "  0.00 %  0 splats: thinner than a millimetre (the shortest axis, ", "  0.00 %  0 splats: larger than a tenth of the size\n",
-          "  0.17 %  5 splats: floaters: seen, but alone (fewer than 5 splats within", "(0.1 MiB) on the GPU, 52 a splat",
-          "if too much      convert --crop="}) {
+          "  0.00 %  0 splats: thinner than a millimetre (the shortest axis, ",
+          "  0.00 %  0 splats: larger than a tenth of the size\n",
+          "  0.17 %  5 splats: floaters: seen, but alone (fewer than 5 splats within",
+          "(0.1 MiB) on the GPU, 52 a splat", "if too much      convert --crop="}) {
         CAPTURE(std::string(row));
         CHECK(contains(info, row));
     }
     CHECK_FALSE(contains(info, "--sh-degree"));
     CHECK(contains(info, "\nup                 0,-1,0: by convention, as no floor was found\n"));
     // The advice can be followed, also far from the origin and in a tiny scene.
-    for (const auto& [scale, away, type] :
-         {std::tuple(1.0, 0.0, "float"), {1.0, 40000.0, "float"}, {1.0, 4e6, "double"}, {1e-4, 0.5, "float"}}) {
+    for (const auto& [scale, away, type] : {std::tuple(1.0, 0.0, "float"),
+                                            {1.0, 40000.0, "float"},
+                                            {1.0, 4e6, "double"},
+                                            {1e-4, 0.5, "float"}}) {
         CAPTURE(away);
         PlyText moved = ply;
         for (const char* name : {"x", "y", "z"}) {
@@ -66,18 +70,23 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
     CHECK(contains(work.go("info builtin:one-splat").output, "colour space       display-encoded (sRGB)\n"));
 }
 
-TEST_CASE("a scene and its cameras that are moved together give the same picture, and reports are in the file's coordinates") {
+TEST_CASE(
+    "a scene and its cameras that are moved together give the same picture, and reports are in the file's "
+    "coordinates") {
     const Workplace work;
     const auto rendered = [&](const std::string& name, const glm::dvec3& moved, const std::string& words) {
         fs::create_directory(work.path / name);
         Scene scene = makeBuiltin("builtin:fence");
         scene.origin = moved;
         writePly(scene, (work.path / name / "scene.ply").string());
-        work.write(name + "/cameras.json",
-                   fmt::format(R"([{{"position": [{}, {}, {}], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "width": 64, "height": 48,)"
-                               R"("fx": 60, "fy": 60}}])",
-                               moved.x, moved.y, moved.z - 1.0));
-        (void)work.go(fmt::format("render {0}/scene.ply --mode mono --size 64x48 --out {0}/out {1}", name, words));
+        work.write(
+            name + "/cameras.json",
+            fmt::format(R"([{{"position": [{}, {}, {}], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],)"
+                        R"( "width": 64, "height": 48,)"
+                        R"("fx": 60, "fy": 60}}])",
+                        moved.x, moved.y, moved.z - 1.0));
+        (void)work.go(
+            fmt::format("render {0}/scene.ply --mode mono --size 64x48 --out {0}/out {1}", name, words));
         const auto report = nlohmann::json::parse(work.bytesOf(name + "/out/report.json"));
         const auto& eye = report["eyes"]["mono"]["position"];
         const glm::dvec3 at(eye[0].get<double>(), eye[1].get<double>(), eye[2].get<double>());
@@ -100,11 +109,13 @@ TEST_CASE_FIXTURE(InFolder, "the program loads the level that --lod names and sa
     const Workplace work;
     const std::string source = writeStreamed(folder, "scene", makeLodMeta());
     const Outcome info = work.go("info '" + source + "'");
-    CHECK(contains(info.output, "levels of detail   0: 16 splats (loaded)\n                   1: 8 splats\n"));
+    CHECK(
+        contains(info.output, "levels of detail   0: 16 splats (loaded)\n                   1: 8 splats\n"));
     CHECK(contains(info.output, "environment: 8 splats (loaded)"));
     CHECK(contains(work.go("info --lod 1 '" + source + "'").output, "1: 8 splats (loaded)"));
     (void)work.go("convert --lod 1 '" + source + "' coarse.ply");
-    checkSameScene(loadScene((work.path / "coarse.ply").string()), loadScene(source, 0, nullptr, {}, {1, {}}));
+    checkSameScene(loadScene((work.path / "coarse.ply").string()),
+                   loadScene(source, 0, nullptr, {}, {1, {}}));
     // The report says what the program chose.
     (void)work.go("render '" + source + "' --mode mono --size 16x16 --out seen");
     const std::string report = work.bytesOf("seen/report.json");

@@ -9,36 +9,45 @@ SUITE(web_program) {
 
 // With a cache beside the workplace's folder.
 std::string environmentOf(const Workplace& work) {
-    return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'", work.base.string());
+    return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'",
+                       work.base.string());
 }
 
-TEST_CASE_FIXTURE(AtWork, "render, bench, info, convert and view take an address, and the user's cache keeps what --cache-limit lets it") {
+TEST_CASE_FIXTURE(AtWork,
+                  "render, bench, info, convert and view take an address, and the user's cache keeps what "
+                  "--cache-limit lets it") {
     writePly(makeBuiltin("builtin:slanted-wall", 0), (work.path / "wall.ply").string());
     const auto done = [&](const std::string& arguments) {
         const Outcome outcome = work.go(arguments, environmentOf(work));
         CHECK(outcome.errors.empty());
         return outcome.output;
     };
-    const std::string camera = " --mode mono --size 64x64 --eye=0,0,-1 --look=0,0,1", near = done("info wall.ply");
+    const std::string camera = " --mode mono --size 64x64 --eye=0,0,-1 --look=0,0,1",
+                      near = done("info wall.ply");
     const std::string picture = std::string("/mono") + extensionOf(PictureKind::kDisplay);
     done("render wall.ply --out near" + camera);
     done("convert wall.ply near.spz");
-    WebServer server([bytes = work.bytesOf("wall.ply")](const WebRequest&) { return answer("200 OK", "ETag: \"1\"\r\n", bytes); });
+    WebServer server([bytes = work.bytesOf("wall.ply")](const WebRequest&) {
+        return answer("200 OK", "ETag: \"1\"\r\n", bytes);
+    });
     const std::string address = server.at("/wall.ply");
     const std::string note =
-        "note               " + address + ": came by http, so others on the way could read and change it; https is safer\n";
+        "note               " + address +
+        ": came by http, so others on the way could read and change it; https is safer\n";
     CHECK(replaced(done("info " + address + " --cache-limit 0"), address, "wall.ply") == near + note);
     CHECK(filesIn(work.base / "caches/binosplat/web").empty());
     done("render " + address + " --out far" + camera);
     CHECK(filesIn(work.base / "caches/binosplat/web").size() == 2);
-    CHECK(these(work.bytesOf("far" + picture).empty(), work.bytesOf("far" + picture)) == these(false, work.bytesOf("near" + picture)));
+    CHECK(these(work.bytesOf("far" + picture).empty(), work.bytesOf("far" + picture)) ==
+          these(false, work.bytesOf("near" + picture)));
     done("convert " + address + " far.spz");
     CHECK(work.bytesOf("far.spz") == work.bytesOf("near.spz"));
     work.write("one.toml", "[bench]\nmodes = [\"mono\"]\nscores = [\"none\"]\nwarm-up = 0\nrepeats = 1\n");
     CHECK(contains(done("bench " + address + " --out bench --config one.toml --size 64x64"), "wall.ply"));
 #ifdef BINOSPLAT_OPENXR
     // Without a command as well, as for a file.
-    work.go(address + " --simulate --frames 2 --load-first --mode mono --hide-panel --hide-hands --out seen", environmentOf(work));
+    work.go(address + " --simulate --frames 2 --load-first --mode mono --hide-panel --hide-hands --out seen",
+            environmentOf(work));
 #endif
     server.stop();
     CHECK(contains(done("info " + address), address + ": cannot be reached ("));

@@ -8,8 +8,12 @@ SUITE(disk_room) {
 
 TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
     constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
-    for (const auto& [capacity, available, room] : std::vector<std::array<std::uint64_t, 3>>{
-             {1000 * kGib, 500 * kGib, 499 * kGib}, {1000 * kGib, kGib, 0}, {1000 * kGib, 0, 0}, {10 * kGib, kGib, kGib / 2}, {0, 0, 0}}) {
+    for (const auto& [capacity, available, room] :
+         std::vector<std::array<std::uint64_t, 3>>{{1000 * kGib, 500 * kGib, 499 * kGib},
+                                                   {1000 * kGib, kGib, 0},
+                                                   {1000 * kGib, 0, 0},
+                                                   {10 * kGib, kGib, kGib / 2},
+                                                   {0, 0, 0}}) {
         CHECK(roomOn({capacity, available, available}) == room);
     }
 }
@@ -36,7 +40,9 @@ TEST_CASE("a disk is looked at again after 16 MiB, and what others wrote meanwhi
     CHECK(looks == 3);
 }
 
-TEST_CASE("a folder in memory has no more room than memory, one on a disk no more than that, and one that is not there none") {
+TEST_CASE(
+    "a folder in memory has no more room than memory, one on a disk no more than that, and one that is not "
+    "there none") {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     CHECK(roomIn(folder) <= std::filesystem::space(folder).available);
     CHECK(roomIn(folder / "not there") == 0);

@@ -82,10 +82,12 @@ TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
         std::string reason;
         return openRegularFile(path, reason) != nullptr ? "opened" : reason;
     };
-    CHECK(these(reasonFor(work.path / "file"), reasonFor(work.path / "link"), reasonFor(work.path / "pipe"), reasonFor("/dev/zero")) ==
+    CHECK(these(reasonFor(work.path / "file"), reasonFor(work.path / "link"), reasonFor(work.path / "pipe"),
+                reasonFor("/dev/zero")) ==
           these("opened", "opened", "not a regular file", "not a regular file"));
-    CHECK(these(reasonFor(work.path), reasonFor(work.path / "none"), reasonFor(work.path / "file" / "below")) ==
-          these("is a directory", "No such file or directory", "Not a directory"));
+    CHECK(
+        these(reasonFor(work.path), reasonFor(work.path / "none"), reasonFor(work.path / "file" / "below")) ==
+        these("is a directory", "No such file or directory", "Not a directory"));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a file is read from anywhere, and its stamp tells when it was written to") {
@@ -106,10 +108,14 @@ TEST_CASE_FIXTURE(AtWork, "a file is read from anywhere, and its stamp tells whe
     CHECK(stampOf(file.get()) != stamp);
 }
 
-TEST_CASE_FIXTURE(AtWork, "a scene that is written does not go through a link that waits where its unfinished file will be") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "a scene that is written does not go through a link that waits where its unfinished file will be") {
     const fs::path victim = work.path / "victim", target = work.path / "scene.ply";
     work.write("victim", "keep me");
-    const auto planted = [&](const std::string& attempt) { return fmt::format("scene.ply.part{}{}", processId(), attempt); };
+    const auto planted = [&](const std::string& attempt) {
+        return fmt::format("scene.ply.part{}{}", processId(), attempt);
+    };
     fs::create_symlink(victim, work.path / planted(""));
     fs::create_symlink(victim, work.path / planted("-0"));
     work.write(planted("-1"), "somebody's");
@@ -123,7 +129,8 @@ TEST_CASE_FIXTURE(AtWork, "a scene that is written does not go through a link th
         PartFile given_up(target.string());
         given_up.write("half", 4);
     }
-    CHECK(these(work.bytesOf("scene.ply"), work.bytesOf("victim"), work.bytesOf(planted("-1"))) == these("new", "keep me", "somebody's"));
+    CHECK(these(work.bytesOf("scene.ply"), work.bytesOf("victim"), work.bytesOf(planted("-1"))) ==
+          these("new", "keep me", "somebody's"));
     CHECK(std::distance(fs::directory_iterator(work.path), {}) == 5);
 }
 
@@ -132,8 +139,10 @@ TEST_CASE_FIXTURE(AtWork, "files that appear together do not replace a pipe, a d
     OutputFiles files(work.path);
     writeText(files.staging() / "another", "1");
     writeText(files.staging() / "report", "1");
-    CHECK_THROWS_WITH_AS(files.publish(), doctest::Contains("report: cannot be written (not a regular file), must be a file or not there"),
-                         Error);
+    CHECK_THROWS_WITH_AS(
+        files.publish(),
+        doctest::Contains("report: cannot be written (not a regular file), must be a file or not there"),
+        Error);
     CHECK(fs::is_fifo(work.path / "report"));
     CHECK_FALSE(fs::exists(work.path / "another"));
     fs::remove(work.path / "report");
@@ -145,7 +154,9 @@ TEST_CASE_FIXTURE(AtWork, "files that appear together do not replace a pipe, a d
     CHECK(work.bytesOf("victim") == "keep me");
 }
 
-TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a size that people write, or refused at once") {
+TEST_CASE(
+    "settings, headsets, cameras, head motion and pictures are files of a size that people write, or refused "
+    "at once") {
     const Patience patience;
     const Workplace work;
     makePipe(work.path / "pipe");
@@ -153,17 +164,19 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
     work.write("long", "");
     fs::resize_file(work.path / "long", std::uintmax_t{100} << 20);
     using Reader = void (*)(const fs::path&);
-    for (const auto& [read, most] : {std::pair<Reader, int>([](const fs::path& path) { (void)readSettingsFile(path); }, 4),
-                                     {[](const fs::path& path) { (void)readHeadset(path); }, 4},
-                                     {[](const fs::path& path) { (void)readCameraFile(path, glm::dvec3(0.0)); }, 16},
-                                     {[](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, 16}}) {
+    for (const auto& [read, most] :
+         {std::pair<Reader, int>([](const fs::path& path) { (void)readSettingsFile(path); }, 4),
+          {[](const fs::path& path) { (void)readHeadset(path); }, 4},
+          {[](const fs::path& path) { (void)readCameraFile(path, glm::dvec3(0.0)); }, 16},
+          {[](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, 16}}) {
         for (const auto& [name, reason] : {std::pair<const char*, std::string>("pipe", "not a regular file"),
                                            {"folder", "is a directory"},
                                            {"long", fmt::format("longer than {} MiB", most)},
                                            {"none", "No such file or directory"}}) {
             const fs::path path = work.path / name;
             const std::string message = test::errorOf([&] { read(path); });
-            CHECK(message.starts_with(fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
+            CHECK(message.starts_with(
+                fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
             CHECK(message.find('\n') == std::string::npos);
         }
     }
@@ -171,7 +184,8 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
     for (const char* name : {"pipe.png", "pipe.pfm", "pipe.ppm"}) {
         const fs::path path = work.path / name;
         makePipe(path);
-        const std::string message = path.string() + ": cannot be read (not a regular file), must be an image file";
+        const std::string message =
+            path.string() + ": cannot be read (not a regular file), must be an image file";
         CHECK_THROWS_WITH_AS((void)readPicture(path), message.c_str(), Error);
     }
     // The largest allowed size is read, one byte more is too much.
@@ -191,13 +205,16 @@ TEST_CASE_FIXTURE(AtWork, "a program runs with what it prints in a new file") {
     CHECK_FALSE(runProgram({"sh", "-c", "exit 3"}, work.path / "other"));
     work.write("victim", "keep me");
     fs::create_symlink(work.path / "victim", work.path / "link");
-    CHECK_THROWS_WITH_AS(runProgram({"sh", "-c", "echo no"}, work.path / "link"), doctest::Contains("sh cannot be run ("), Error);
+    CHECK_THROWS_WITH_AS(runProgram({"sh", "-c", "echo no"}, work.path / "link"),
+                         doctest::Contains("sh cannot be run ("), Error);
     CHECK(work.bytesOf("victim") == "keep me");
     CHECK_THROWS_WITH_AS(runProgram({"no-such-program-anywhere"}, work.path / "third"),
                          "no-such-program-anywhere cannot be run (No such file or directory)", Error);
 }
 
-TEST_CASE("the environment is set and read, nothing and an empty text are one, and the program knows its own file") {
+TEST_CASE(
+    "the environment is set and read, nothing and an empty text are one, and the program knows its own "
+    "file") {
     constexpr const char* kName = "BINOSPLAT_TEST_OF_ENVIRONMENT";
     CHECK(environment(kName).empty());
     setEnvironment(kName, "\u00e4 b");
@@ -209,30 +226,36 @@ TEST_CASE("the environment is set and read, nothing and an empty text are one, a
 
 TEST_CASE("the user's folders are where the environment says, and relative ones are nobody's") {
     const auto foldersWith = [](const char* home, const char* cache, const char* config) {
-        for (const auto& [name, value] : {std::pair("HOME", home), {"XDG_CACHE_HOME", cache}, {"XDG_CONFIG_HOME", config}}) {
+        for (const auto& [name, value] :
+             {std::pair("HOME", home), {"XDG_CACHE_HOME", cache}, {"XDG_CONFIG_HOME", config}}) {
             setEnvironment(name, value);
         }
         CHECK(userHomeFolder() == (*home == '/' ? fs::path(home) : fs::path()));
         return std::pair(userCacheFolder(), userConfigFolder());
     };
-    const std::string home = environment("HOME"), cache = environment("XDG_CACHE_HOME"), config = environment("XDG_CONFIG_HOME");
+    const std::string home = environment("HOME"), cache = environment("XDG_CACHE_HOME"),
+                      config = environment("XDG_CONFIG_HOME");
     using Folders = std::pair<fs::path, fs::path>;
-    CHECK(foldersWith("/home/somebody", "", "here") == Folders("/home/somebody/.cache", "/home/somebody/.config"));
-    CHECK(these(foldersWith("/home/somebody", "/caches", "/settings"), foldersWith("", "", ""), foldersWith("here", "", "")) ==
-          these(Folders("/caches", "/settings"), Folders(), Folders()));
+    CHECK(foldersWith("/home/somebody", "", "here") ==
+          Folders("/home/somebody/.cache", "/home/somebody/.config"));
+    CHECK(these(foldersWith("/home/somebody", "/caches", "/settings"), foldersWith("", "", ""),
+                foldersWith("here", "", "")) == these(Folders("/caches", "/settings"), Folders(), Folders()));
     CHECK(fileSystemRoots() == std::vector<fs::path>{"/"});
     foldersWith(home.c_str(), cache.c_str(), config.c_str());
 }
 
-TEST_CASE_FIXTURE(AtWork, "the pictures' folder is the one that the desktop names, or else Pictures at home") {
+TEST_CASE_FIXTURE(AtWork,
+                  "the pictures' folder is the one that the desktop names, or else Pictures at home") {
     const std::string home = environment("HOME"), config = environment("XDG_CONFIG_HOME");
     const auto folderWith = [&](const char* at_home, const char* line) {
         setEnvironment("HOME", at_home);
-        std::ofstream(work.path / "user-dirs.dirs") << "# a comment\nXDG_MUSIC_DIR=\"$HOME/Lieder\"\n" << line << "\n";
+        std::ofstream(work.path / "user-dirs.dirs") << "# a comment\nXDG_MUSIC_DIR=\"$HOME/Lieder\"\n"
+                                                    << line << "\n";
         return userPicturesFolder();
     };
     setEnvironment("XDG_CONFIG_HOME", work.path.string());
-    CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"$HOME/Bilder und mehr\"") == "/home/somebody/Bilder und mehr");
+    CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"$HOME/Bilder und mehr\"") ==
+          "/home/somebody/Bilder und mehr");
     CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"/photos\"") == "/photos");
     CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"photos\"") == "/home/somebody/Pictures");
     CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"") == "/home/somebody/Pictures");
@@ -251,8 +274,8 @@ TEST_CASE("nothing but platform_*.cpp includes a header of a system") {
             const fs::path& path = entry.path();
             const bool source = path.extension() == ".h" || path.extension() == ".cpp";
             // The simulated runtime shares nothing with the program.
-            const bool apart =
-                path.string().find("xr/simulated/") != std::string::npos || path.filename().string().starts_with("platform_");
+            const bool apart = path.string().find("xr/simulated/") != std::string::npos ||
+                               path.filename().string().starts_with("platform_");
             if (!source || apart) { continue; }
             ++files;
             std::ifstream lines(path);

@@ -73,10 +73,16 @@ VkResult strike(const char* call) {
         g_is_lost = true;
         return VK_ERROR_DEVICE_LOST;
     }
-    if (plan.fault == "no-device-memory-once") { return number == plan.number ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS; }
-    if (plan.fault == "surface-lost-once") { return number == plan.number ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS; }
+    if (plan.fault == "no-device-memory-once") {
+        return number == plan.number ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS;
+    }
+    if (plan.fault == "surface-lost-once") {
+        return number == plan.number ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
+    }
     if (plan.fault == "surface-lost") { return VK_ERROR_SURFACE_LOST_KHR; }
-    if (plan.fault == "no-device-memory" || plan.fault == "type-full") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
+    if (plan.fault == "no-device-memory" || plan.fault == "type-full") {
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
     if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }
     if (number == plan.number) { (void)std::raise(plan.fault == "SIGTERM" ? SIGTERM : SIGINT); }
     return VK_SUCCESS;
@@ -89,11 +95,13 @@ std::FILE* traceFile() {
 
 void trace(const char* call, VkFence fence) {
     if (std::FILE* const file = traceFile(); file != nullptr) {
-        std::fprintf(file, "%s %llx\n", call, static_cast<unsigned long long>(reinterpret_cast<std::uintptr_t>(fence)));
+        std::fprintf(file, "%s %llx\n", call,
+                     static_cast<unsigned long long>(reinterpret_cast<std::uintptr_t>(fence)));
     }
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
+VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos,
+                                      VkFence fence) {
     trace("submit", fence);
     faults::noteSubmission();
     faults::noteFenceSubmitted(fence);
@@ -108,7 +116,8 @@ VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfoKHR* in
 }
 
 // A device is lost while it works: the wait itself is executed, so nothing is destroyed that is still in use.
-VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout) {
+VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
+                                    std::uint64_t timeout) {
     for (std::uint32_t i = 0; i < count; ++i) {
         trace("wait", fences[i]);
         faults::noteFenceWait(fences[i], timeout);
@@ -136,7 +145,8 @@ VKAPI_ATTR VkResult VKAPI_CALL waitForQueue(VkQueue queue) {
 
 bool addsType() { return thePlan().fault == "type-full"; }
 
-VKAPI_ATTR void VKAPI_CALL memoryProperties(VkPhysicalDevice physical_device, VkPhysicalDeviceMemoryProperties* properties) {
+VKAPI_ATTR void VKAPI_CALL memoryProperties(VkPhysicalDevice physical_device,
+                                            VkPhysicalDeviceMemoryProperties* properties) {
     g_memory_properties(physical_device, properties);
     g_added_type = properties->memoryTypeCount++;
     properties->memoryTypes[g_added_type] = properties->memoryTypes[0];
@@ -147,25 +157,29 @@ VKAPI_ATTR void VKAPI_CALL requirements(VkDevice device, VkBuffer buffer, VkMemo
     if ((needs->memoryTypeBits & 1) != 0) { needs->memoryTypeBits |= 1u << g_added_type; }
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
-                                        VkDeviceMemory* memory) {
+VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo* info,
+                                        const VkAllocationCallbacks* callbacks, VkDeviceMemory* memory) {
     VkMemoryAllocateInfo own = *info;
     if (addsType() && info->memoryTypeIndex == g_added_type) { own.memoryTypeIndex = 0; }
     const VkResult struck = own.memoryTypeIndex == info->memoryTypeIndex ? strike("allocate") : VK_SUCCESS;
-    const VkResult result = struck != VK_SUCCESS ? struck : BINOSPLAT_NEXT(vkAllocateMemory)(device, &own, callbacks, memory);
+    const VkResult result =
+        struck != VK_SUCCESS ? struck : BINOSPLAT_NEXT(vkAllocateMemory)(device, &own, callbacks, memory);
     if (result == VK_SUCCESS) { faults::countMemory(*memory, info->allocationSize); }
     return result;
 }
 
 // The program reads 64 bits for each.
-VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::uint32_t first, std::uint32_t count, std::size_t bytes,
-                                       void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
-    const VkResult result = BINOSPLAT_NEXT(vkGetQueryPoolResults)(device, pool, first, count, bytes, data, stride, flags);
+VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::uint32_t first,
+                                       std::uint32_t count, std::size_t bytes, void* data,
+                                       VkDeviceSize stride, VkQueryResultFlags flags) {
+    const VkResult result =
+        BINOSPLAT_NEXT(vkGetQueryPoolResults)(device, pool, first, count, bytes, data, stride, flags);
     const char* const apart = std::getenv("BINOSPLAT_FAULT_TICKS");
     const std::optional<std::uint64_t> frame = faults::ticksOf(pool);
     if ((apart == nullptr && !frame) || (flags & VK_QUERY_RESULT_64_BIT) == 0) { return result; }
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t ticks = frame ? *frame * (first + i) / (first + count - 1) : (first + i) * std::strtoull(apart, nullptr, 10);
+        const std::uint64_t ticks = frame ? *frame * (first + i) / (first + count - 1)
+                                          : (first + i) * std::strtoull(apart, nullptr, 10);
         std::memcpy(static_cast<char*>(data) + i * stride, &ticks, sizeof ticks);
     }
     return result;
@@ -174,7 +188,8 @@ VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::u
 // The next layer's link in what the loader chained to a create info.
 template <typename Link>
 Link* linkOf(const void* chain, VkStructureType type) {
-    for (const auto* item = static_cast<const VkBaseInStructure*>(chain); item != nullptr; item = item->pNext) {
+    for (const auto* item = static_cast<const VkBaseInStructure*>(chain); item != nullptr;
+         item = item->pNext) {
         if (item->sType != type) { continue; }
         auto* link = reinterpret_cast<Link*>(const_cast<VkBaseInStructure*>(item));
         if (link->function == VK_LAYER_LINK_INFO) { return link; }
@@ -182,13 +197,15 @@ Link* linkOf(const void* chain, VkStructureType type) {
     return nullptr;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                                              VkInstance* instance) {
-    auto* link = linkOf<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
+VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info,
+                                              const VkAllocationCallbacks* callbacks, VkInstance* instance) {
+    auto* link =
+        linkOf<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
     if (link == nullptr) { return VK_ERROR_INITIALIZATION_FAILED; }
     g_instance_next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
     link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-    const auto create = reinterpret_cast<PFN_vkCreateInstance>(g_instance_next(VK_NULL_HANDLE, "vkCreateInstance"));
+    const auto create =
+        reinterpret_cast<PFN_vkCreateInstance>(g_instance_next(VK_NULL_HANDLE, "vkCreateInstance"));
     const VkResult result = create(info, callbacks, instance);
     if (result != VK_SUCCESS) { return result; }
     g_instance = *instance;
@@ -212,8 +229,8 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     if (result != VK_SUCCESS) { return result; }
     faults::the_device = *device;
     VkPhysicalDeviceProperties properties{};
-    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device,
-                                                                                                                    &properties);
+    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
+        instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device, &properties);
     faults::beginLoad(static_cast<double>(properties.limits.timestampPeriod));
     for (const faults::WatchedCall& watched : faults::watchedCalls()) {
         *watched.next = nullptr;
@@ -223,7 +240,9 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
 }
 
 PFN_vkVoidFunction ownFunction(const char* name) {
-    if (const PFN_vkVoidFunction watched = faults::watchedFunction(name); watched != nullptr) { return watched; }
+    if (const PFN_vkVoidFunction watched = faults::watchedFunction(name); watched != nullptr) {
+        return watched;
+    }
     if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
     if (std::strcmp(name, "vkQueuePresentKHR") == 0 && faults::the_device != VK_NULL_HANDLE &&
         BINOSPLAT_NEXT(vkQueuePresentKHR) != nullptr) {
@@ -234,8 +253,12 @@ PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkQueueWaitIdle") == 0) { return asVoid(waitForQueue); }
     if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
     if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
-    if (addsType() && std::strcmp(name, "vkGetBufferMemoryRequirements") == 0) { return asVoid(requirements); }
-    if (addsType() && std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties") == 0) { return asVoid(memoryProperties); }
+    if (addsType() && std::strcmp(name, "vkGetBufferMemoryRequirements") == 0) {
+        return asVoid(requirements);
+    }
+    if (addsType() && std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties") == 0) {
+        return asVoid(memoryProperties);
+    }
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
     const PFN_vkVoidFunction load = faults::loadFunction(name);
     return load != nullptr ? load : faults::countingFunction(name);

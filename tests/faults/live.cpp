@@ -43,27 +43,30 @@ void count(std::int64_t more) {
 }
 
 // Calls that have one create info and make one object.
-#define BINOSPLAT_EACH_KIND(of)                                                                                                  \
-    of(Buffer) of(Image) of(ImageView) of(ShaderModule) of(PipelineLayout) of(CommandPool) of(Fence) of(Semaphore) of(QueryPool) \
-        of(DescriptorPool) of(DescriptorSetLayout) of(Sampler) of(RenderPass) of(Framebuffer) of(PipelineCache)
+#define BINOSPLAT_EACH_KIND(of)                                                                           \
+    of(Buffer) of(Image) of(ImageView) of(ShaderModule) of(PipelineLayout) of(CommandPool) of(Fence)      \
+        of(Semaphore) of(QueryPool) of(DescriptorPool) of(DescriptorSetLayout) of(Sampler) of(RenderPass) \
+            of(Framebuffer) of(PipelineCache)
 
-#define BINOSPLAT_COUNT_KIND(Kind)                                                                                                         \
-    VKAPI_ATTR VkResult VKAPI_CALL create##Kind(VkDevice device, const Vk##Kind##CreateInfo* info, const VkAllocationCallbacks* callbacks, \
-                                                Vk##Kind* made) {                                                                          \
-        const VkResult result = BINOSPLAT_NEXT(vkCreate##Kind)(device, info, callbacks, made);                                             \
-        if (result == VK_SUCCESS) { count(1); }                                                                                            \
-        return result;                                                                                                                     \
-    }                                                                                                                                      \
-    VKAPI_ATTR void VKAPI_CALL destroy##Kind(VkDevice device, Vk##Kind object, const VkAllocationCallbacks* callbacks) {                   \
-        if (object != VK_NULL_HANDLE) { count(-1); }                                                                                       \
-        BINOSPLAT_NEXT(vkDestroy##Kind)(device, object, callbacks);                                                                        \
+#define BINOSPLAT_COUNT_KIND(Kind)                                                                        \
+    VKAPI_ATTR VkResult VKAPI_CALL create##Kind(VkDevice device, const Vk##Kind##CreateInfo* info,        \
+                                                const VkAllocationCallbacks* callbacks, Vk##Kind* made) { \
+        const VkResult result = BINOSPLAT_NEXT(vkCreate##Kind)(device, info, callbacks, made);            \
+        if (result == VK_SUCCESS) { count(1); }                                                           \
+        return result;                                                                                    \
+    }                                                                                                     \
+    VKAPI_ATTR void VKAPI_CALL destroy##Kind(VkDevice device, Vk##Kind object,                            \
+                                             const VkAllocationCallbacks* callbacks) {                    \
+        if (object != VK_NULL_HANDLE) { count(-1); }                                                      \
+        BINOSPLAT_NEXT(vkDestroy##Kind)(device, object, callbacks);                                       \
     }
 BINOSPLAT_EACH_KIND(BINOSPLAT_COUNT_KIND)
 
 VKAPI_ATTR VkResult VKAPI_CALL createCompute(VkDevice device, VkPipelineCache cache, std::uint32_t many,
-                                             const VkComputePipelineCreateInfo* infos, const VkAllocationCallbacks* callbacks,
-                                             VkPipeline* made) {
-    const VkResult result = BINOSPLAT_NEXT(vkCreateComputePipelines)(device, cache, many, infos, callbacks, made);
+                                             const VkComputePipelineCreateInfo* infos,
+                                             const VkAllocationCallbacks* callbacks, VkPipeline* made) {
+    const VkResult result =
+        BINOSPLAT_NEXT(vkCreateComputePipelines)(device, cache, many, infos, callbacks, made);
     if (result != VK_SUCCESS) { return result; }
     count(many);
     const std::lock_guard lock(g_mutex);
@@ -72,19 +75,22 @@ VKAPI_ATTR VkResult VKAPI_CALL createCompute(VkDevice device, VkPipelineCache ca
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createGraphics(VkDevice device, VkPipelineCache cache, std::uint32_t many,
-                                              const VkGraphicsPipelineCreateInfo* infos, const VkAllocationCallbacks* callbacks,
-                                              VkPipeline* made) {
-    const VkResult result = BINOSPLAT_NEXT(vkCreateGraphicsPipelines)(device, cache, many, infos, callbacks, made);
+                                              const VkGraphicsPipelineCreateInfo* infos,
+                                              const VkAllocationCallbacks* callbacks, VkPipeline* made) {
+    const VkResult result =
+        BINOSPLAT_NEXT(vkCreateGraphicsPipelines)(device, cache, many, infos, callbacks, made);
     if (result == VK_SUCCESS) { count(many); }
     return result;
 }
 
-VKAPI_ATTR void VKAPI_CALL destroyPipeline(VkDevice device, VkPipeline pipeline, const VkAllocationCallbacks* callbacks) {
+VKAPI_ATTR void VKAPI_CALL destroyPipeline(VkDevice device, VkPipeline pipeline,
+                                           const VkAllocationCallbacks* callbacks) {
     if (pipeline != VK_NULL_HANDLE) { count(-1); }
     BINOSPLAT_NEXT(vkDestroyPipeline)(device, pipeline, callbacks);
 }
 
-VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
+VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory,
+                                      const VkAllocationCallbacks* callbacks) {
     {
         const std::lock_guard lock(g_mutex);
         if (const auto found = g_memory.find(memory); found != g_memory.end()) {
@@ -98,7 +104,8 @@ VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory, co
 
 // The host's memory, counted by the sanitizer if there is one.
 std::uint64_t heapBytes() {
-    static const auto ask = reinterpret_cast<std::size_t (*)()>(dlsym(RTLD_DEFAULT, "__sanitizer_get_current_allocated_bytes"));
+    static const auto ask =
+        reinterpret_cast<std::size_t (*)()>(dlsym(RTLD_DEFAULT, "__sanitizer_get_current_allocated_bytes"));
     if (ask != nullptr) { return ask(); }
     const struct mallinfo2 info = mallinfo2();
     return info.uordblks + info.hblkhd;
@@ -139,7 +146,8 @@ bool countsLive() { return output() != nullptr; }
 PFN_vkVoidFunction countingFunction(const char* name) {
     if (!countsLive()) { return nullptr; }
     static const std::map<std::string, PFN_vkVoidFunction> functions{
-#define BINOSPLAT_NAME_KIND(Kind) {"vkCreate" #Kind, asVoid(create##Kind)}, {"vkDestroy" #Kind, asVoid(destroy##Kind)},
+#define BINOSPLAT_NAME_KIND(Kind) \
+    {"vkCreate" #Kind, asVoid(create##Kind)}, {"vkDestroy" #Kind, asVoid(destroy##Kind)},
         BINOSPLAT_EACH_KIND(BINOSPLAT_NAME_KIND){"vkCreateComputePipelines", asVoid(createCompute)},
         {"vkCreateGraphicsPipelines", asVoid(createGraphics)},
         {"vkDestroyPipeline", asVoid(destroyPipeline)},
@@ -168,9 +176,11 @@ void noteSubmission() {
     const std::lock_guard lock(g_mutex);
     if (++g_submissions % kEvery != 0) { return; }
     const auto say = [](std::int64_t value) { return static_cast<long long>(value); };
-    std::fprintf(file, "%llu %lld-%lld %lld-%lld %llu %llu %llu\n", static_cast<unsigned long long>(g_submissions), say(g_objects.least),
-                 say(g_objects.most), say(g_bytes.least), say(g_bytes.most), static_cast<unsigned long long>(heapBytes()),
-                 static_cast<unsigned long long>(residentBytes()), static_cast<unsigned long long>(g_kernels_made));
+    std::fprintf(file, "%llu %lld-%lld %lld-%lld %llu %llu %llu\n",
+                 static_cast<unsigned long long>(g_submissions), say(g_objects.least), say(g_objects.most),
+                 say(g_bytes.least), say(g_bytes.most), static_cast<unsigned long long>(heapBytes()),
+                 static_cast<unsigned long long>(residentBytes()),
+                 static_cast<unsigned long long>(g_kernels_made));
     std::fflush(file);
     g_objects.beginAnew();
     g_bytes.beginAnew();

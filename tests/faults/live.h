@@ -22,8 +22,9 @@ inline std::FILE* openNamedBy(const char* variable) {
 // The only device of a process, and where to find the next layer's functions for it.
 inline VkDevice the_device = VK_NULL_HANDLE;
 inline PFN_vkGetDeviceProcAddr device_next = nullptr;
-#define BINOSPLAT_NEXT(function) \
-    reinterpret_cast<decltype(&function)>(binosplat::faults::device_next(binosplat::faults::the_device, #function))
+#define BINOSPLAT_NEXT(function)           \
+    reinterpret_cast<decltype(&function)>( \
+        binosplat::faults::device_next(binosplat::faults::the_device, #function))
 
 template <typename Function>
 PFN_vkVoidFunction asVoid(Function* function) {

@@ -41,7 +41,8 @@ const std::map<std::uint64_t, double>& loads() {
     return all;
 }
 
-VKAPI_ATTR void VKAPI_CALL resetQueryPool(VkCommandBuffer commands, VkQueryPool pool, std::uint32_t first, std::uint32_t count) {
+VKAPI_ATTR void VKAPI_CALL resetQueryPool(VkCommandBuffer commands, VkQueryPool pool, std::uint32_t first,
+                                          std::uint32_t count) {
     {
         const std::lock_guard lock(g_load_mutex);
         g_recordings[commands] = {pool};
@@ -58,7 +59,8 @@ VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUti
     if (next != nullptr) { next(commands, label); }
 }
 
-VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, std::uint32_t y,
+                                    std::uint32_t z) {
     {
         const std::lock_guard lock(g_load_mutex);
         Recording& recording = g_recordings[commands];

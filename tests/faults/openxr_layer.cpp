@@ -79,12 +79,14 @@ struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
     static inline XrResult(XRAPI_PTR* next)(Arguments...) = nullptr;
 };
 
-#define BINOSPLAT_FAULTY(item)                                                                                                           \
-    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT) item(xrEnumerateDisplayRefreshRatesFB)          \
-        item(xrGetDisplayRefreshRateFB) item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace)   \
-            item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain) item(xrWaitFrame) item(xrBeginFrame) \
-                item(xrAcquireSwapchainImage) item(xrWaitSwapchainImage) item(xrReleaseSwapchainImage) item(xrEndFrame)                  \
-                    item(xrGetSystemProperties)
+#define BINOSPLAT_FAULTY(item)                                                                             \
+    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT)                   \
+        item(xrEnumerateDisplayRefreshRatesFB) item(xrGetDisplayRefreshRateFB)                             \
+            item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace) \
+                item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain)    \
+                    item(xrWaitFrame) item(xrBeginFrame) item(xrAcquireSwapchainImage)                     \
+                        item(xrWaitSwapchainImage) item(xrReleaseSwapchainImage) item(xrEndFrame)          \
+                            item(xrGetSystemProperties)
 
 #define BINOSPLAT_TAG(name)                         \
     struct Tag_##name {                             \
@@ -97,11 +99,14 @@ std::atomic<int> g_looks{0};
 PFN_xrLocateViews g_locate_views = nullptr;
 PFN_xrBeginFrame g_begin_frame = nullptr;
 
-XRAPI_ATTR XrResult XRAPI_CALL locateViews(XrSession session, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity,
-                                           std::uint32_t* count, XrView* views) {
+XRAPI_ATTR XrResult XRAPI_CALL locateViews(XrSession session, const XrViewLocateInfo* info,
+                                           XrViewState* state, std::uint32_t capacity, std::uint32_t* count,
+                                           XrView* views) {
     const XrResult result = g_locate_views(session, info, state, capacity, count, views);
     if (XR_FAILED(result) || capacity == 0 || g_looks++ != 0) { return result; }
-    for (std::uint32_t i = 0; i < *count; ++i) { views[i].pose.position.y += std::strtof(std::getenv("BINOSPLAT_XR_EARLY"), nullptr); }
+    for (std::uint32_t i = 0; i < *count; ++i) {
+        views[i].pose.position.y += std::strtof(std::getenv("BINOSPLAT_XR_EARLY"), nullptr);
+    }
     return result;
 }
 
@@ -122,8 +127,11 @@ XRAPI_ATTR XrResult XRAPI_CALL pollEvent(XrInstance instance, XrEventDataBuffer*
 
 // Whether BINOSPLAT_XR_LOSE takes over the function.
 bool takesEvents(const char* name, PFN_xrVoidFunction* function) {
-    if (std::getenv("BINOSPLAT_XR_LOSE") == nullptr || std::strcmp(name, "xrPollEvent") != 0) { return false; }
-    g_poll_event = reinterpret_cast<PFN_xrPollEvent>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(pollEvent)));
+    if (std::getenv("BINOSPLAT_XR_LOSE") == nullptr || std::strcmp(name, "xrPollEvent") != 0) {
+        return false;
+    }
+    g_poll_event = reinterpret_cast<PFN_xrPollEvent>(
+        std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(pollEvent)));
     return true;
 }
 
@@ -131,16 +139,19 @@ bool takesEvents(const char* name, PFN_xrVoidFunction* function) {
 bool takesEarly(const char* name, PFN_xrVoidFunction* function) {
     if (std::getenv("BINOSPLAT_XR_EARLY") == nullptr) { return false; }
     if (std::strcmp(name, "xrLocateViews") == 0) {
-        g_locate_views = reinterpret_cast<PFN_xrLocateViews>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(locateViews)));
+        g_locate_views = reinterpret_cast<PFN_xrLocateViews>(
+            std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(locateViews)));
     } else if (std::strcmp(name, "xrBeginFrame") == 0) {
-        g_begin_frame = reinterpret_cast<PFN_xrBeginFrame>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(beginFrame)));
+        g_begin_frame = reinterpret_cast<PFN_xrBeginFrame>(
+            std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(beginFrame)));
     } else {
         return false;
     }
     return true;
 }
 
-XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
+XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const char* name,
+                                                   PFN_xrVoidFunction* function) {
     const auto found = faults().find(name);
     if (found != faults().end() && found->second.is_missing) {
         *function = nullptr;
@@ -198,7 +209,8 @@ struct CreateInfo {
     NextInfo* next;
 };
 
-XRAPI_ATTR XrResult XRAPI_CALL createInstance(const XrInstanceCreateInfo* info, const CreateInfo* layers, XrInstance* instance) {
+XRAPI_ATTR XrResult XRAPI_CALL createInstance(const XrInstanceCreateInfo* info, const CreateInfo* layers,
+                                              XrInstance* instance) {
     while (faults().contains("xrCreateInstance")) { pause(); }
     g_next = layers->next->get_instance_proc_addr;
     CreateInfo rest = *layers;
@@ -210,7 +222,9 @@ XRAPI_ATTR XrResult XRAPI_CALL createInstance(const XrInstanceCreateInfo* info, 
 
 extern "C" __attribute__((visibility("default"))) XRAPI_ATTR XrResult XRAPI_CALL
 xrNegotiateLoaderApiLayerInterface(const LoaderInfo* loader, const char* /*name*/, LayerRequest* request) {
-    if (loader == nullptr || request == nullptr || loader->least_interface > 1) { return XR_ERROR_INITIALIZATION_FAILED; }
+    if (loader == nullptr || request == nullptr || loader->least_interface > 1) {
+        return XR_ERROR_INITIALIZATION_FAILED;
+    }
     request->interface_version = 1;
     request->api_version = XR_MAKE_VERSION(1, 0, 0);
     request->get_instance_proc_addr = getInstanceProcAddr;

@@ -59,7 +59,9 @@ inline void noteFenceWait(VkFence fence, std::uint64_t timeout) {
 inline void endFrame() {
     const std::lock_guard lock(waits_mutex);
     std::fprintf(waitsFile(), "%u", frame_now++);
-    for (const auto& [kind, count] : std::exchange(waits_of_frame, {})) { std::fprintf(waitsFile(), " %s %u", kind.data(), count); }
+    for (const auto& [kind, count] : std::exchange(waits_of_frame, {})) {
+        std::fprintf(waitsFile(), " %s %u", kind.data(), count);
+    }
     std::fprintf(waitsFile(), "\n");
     std::fflush(waitsFile());
 }
@@ -127,7 +129,8 @@ inline const auto& watchedCalls() {
 // The counting function of this name; null if it is not watched, or if there is no next one yet.
 inline PFN_vkVoidFunction watchedFunction(std::string_view name) {
     const auto found = std::ranges::find(watchedCalls(), name, &WatchedCall::name);
-    return waitsFile() != nullptr && found != watchedCalls().end() && *found->next != nullptr ? found->call : nullptr;
+    return waitsFile() != nullptr && found != watchedCalls().end() && *found->next != nullptr ? found->call
+                                                                                              : nullptr;
 }
 
 }  // namespace binosplat::faults

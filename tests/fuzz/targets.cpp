@@ -47,7 +47,9 @@ private:
 std::string textOf(Bytes input) { return {input.begin(), input.end()}; }
 
 void readScene(Bytes input) { (void)loadScene(MemoryFile(input).path()); }
-void readScene(const std::string& input) { readScene({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()}); }
+void readScene(const std::string& input) {
+    readScene({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
+}
 
 // Files begin as their format requires, so that no time is spent finding that.
 void readPly(Bytes input) { readScene("ply\n" + textOf(input)); }
@@ -71,7 +73,8 @@ private:
 
 bool isFinite(const Scene& scene) {
     const auto finite = [](float value) { return std::isfinite(value); };
-    return std::all_of(scene.sh.begin(), scene.sh.end(), finite) && std::all_of(scene.opacities.begin(), scene.opacities.end(), finite) &&
+    return std::all_of(scene.sh.begin(), scene.sh.end(), finite) &&
+           std::all_of(scene.opacities.begin(), scene.opacities.end(), finite) &&
            std::all_of(scene.positions.begin(), scene.positions.end(),
                        [&](const glm::vec3& p) { return finite(p.x) && finite(p.y) && finite(p.z); });
 }
@@ -127,7 +130,10 @@ void readScript(Bytes input) {
     (void)script.stageFromLocal();
     for (const double time_s : {-1e7, -0.5, 0.0, 0.25, 1.0, 2.5, 1e7}) {
         const simulated::State state = script.at(time_s);
-        if (!std::isfinite(state.stage_from_head.position.x) || !std::isfinite(state.stage_from_head.orientation.w)) { std::abort(); }
+        if (!std::isfinite(state.stage_from_head.position.x) ||
+            !std::isfinite(state.stage_from_head.orientation.w)) {
+            std::abort();
+        }
     }
     if (script.eventsIn(-1e7, 1e7).size() != script.events.size()) { std::abort(); }
 }
@@ -158,7 +164,8 @@ constexpr auto kTargets = std::to_array<Target>({
 
 void requireOneLine(std::string_view message) {
     if (!message.empty() && message.find('\n') == std::string_view::npos) { return; }
-    std::fprintf(stderr, "not a message as it should be: %.*s\n", static_cast<int>(message.size()), message.data());
+    std::fprintf(stderr, "not a message as it should be: %.*s\n", static_cast<int>(message.size()),
+                 message.data());
     std::abort();
 }
 

@@ -17,8 +17,9 @@ TEST_CASE("every input and output that is bound is one of its controller") {
         if (bindings.extension != nullptr) { enabled.extensions.insert(bindings.extension); }
         CHECK(enabled.meets(profile->depends));
         for (const std::size_t side : {0, 1}) {
-            for (const char* what : {"input/aim/pose", "input/grip/pose", bindings.trigger, bindings.squeeze, bindings.stick,
-                                     bindings.stick_click, bindings.stick_press, bindings.menu[side], bindings.haptic}) {
+            for (const char* what :
+                 {"input/aim/pose", "input/grip/pose", bindings.trigger, bindings.squeeze, bindings.stick,
+                  bindings.stick_click, bindings.stick_press, bindings.menu[side], bindings.haptic}) {
                 if (what == nullptr) { continue; }
                 const std::string path = fmt::format("/user/hand/{}/{}", side == 0 ? "left" : "right", what);
                 CHECK_MESSAGE(simulated::allowsBinding(*profile, path, enabled), path);
@@ -28,11 +29,13 @@ TEST_CASE("every input and output that is bound is one of its controller") {
 }
 
 TEST_CASE("a gamepad has every input that is bound, and the core has the gamepad") {
-    const simulated::Profile* const profile = simulated::findProfile(std::string("/interaction_profiles/") + kGamepadProfile);
+    const simulated::Profile* const profile =
+        simulated::findProfile(std::string("/interaction_profiles/") + kGamepadProfile);
     REQUIRE(profile != nullptr);
     CHECK(simulated::Enabled().meets(profile->depends));
     for (const GamepadBinding& input : kGamepadBindings) {
-        CHECK_MESSAGE(simulated::allowsBinding(*profile, fmt::format("/user/gamepad/{}", input.path), {}), input.path);
+        CHECK_MESSAGE(simulated::allowsBinding(*profile, fmt::format("/user/gamepad/{}", input.path), {}),
+                      input.path);
         CHECK(input.is_stick == (input.button == nullptr));
     }
 }

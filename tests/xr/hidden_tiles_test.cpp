@@ -55,11 +55,13 @@ float lastBeforeChange(float from, const Make& make) {
 
 TEST_CASE("a tile is hidden if all of it is, and up is up") {
     // Exactly the upper left tile: x from -1.5 to -0.5, y from 0.5 to 1.5.
-    CHECK(findHiddenTiles(rectangle(-1.5f, -0.5f, 0.5f, 1.5f), kIntrinsics, kSizePx) == Tiles{1, 0, 0, 0, 0, 0, 0, 0, 0});
+    CHECK(findHiddenTiles(rectangle(-1.5f, -0.5f, 0.5f, 1.5f), kIntrinsics, kSizePx) ==
+          Tiles{1, 0, 0, 0, 0, 0, 0, 0, 0});
     // One pixel less.
     CHECK(findHiddenTiles(rectangle(-1.5f, -0.57f, 0.5f, 1.5f), kIntrinsics, kSizePx) == Tiles(9, 0));
     // The bottom row of half tiles, and more than the picture.
-    CHECK(findHiddenTiles(rectangle(-9.0f, 9.0f, -9.0f, -0.5f), kIntrinsics, kSizePx) == Tiles{0, 0, 0, 0, 0, 0, 1, 1, 1});
+    CHECK(findHiddenTiles(rectangle(-9.0f, 9.0f, -9.0f, -0.5f), kIntrinsics, kSizePx) ==
+          Tiles{0, 0, 0, 0, 0, 0, 1, 1, 1});
 }
 
 TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
@@ -69,7 +71,8 @@ TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
     HiddenMesh mesh;
     const auto add = [&](float left, float right, float top, float bottom) {
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), {{left, -top}, {right, -top}, {right, -bottom}, {left, -bottom}});
+        mesh.vertices.insert(mesh.vertices.end(),
+                             {{left, -top}, {right, -top}, {right, -bottom}, {left, -bottom}});
         for (const std::uint32_t corner : {0, 1, 2, 0, 2, 3}) { mesh.indices.push_back(first + corner); }
     };
     add(0.0f, 80.0f, 0.0f, 40.0f);
@@ -81,7 +84,8 @@ TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
         return std::count(tiles.begin(), tiles.end(), 0);
     };
     // With 7: 33 to 47. With 8: up to 48, in the next tile.
-    for (const auto& [margin_px, tiles] : {std::pair(0u, 1), {7u, 1}, {8u, 4}, {9u, 9}, {24u, 16}, {1000u, 25}}) {
+    for (const auto& [margin_px, tiles] :
+         {std::pair(0u, 1), {7u, 1}, {8u, 4}, {9u, 9}, {24u, 16}, {1000u, 25}}) {
         CHECK(shown(margin_px) == tiles);
     }
     CHECK(xr::hiddenMarginPx({1000.0, 800.0, 0.0, 0.0}) == 18);
@@ -99,7 +103,8 @@ TEST_CASE("triangles may turn either way and meet within a tile") {
 TEST_CASE("no mesh, and broken ones, hide nothing") {
     HiddenMesh out_of_range = rectangle(-9.0f, 9.0f, -9.0f, 9.0f);
     out_of_range.indices = {0, 1, 7, 2};
-    const HiddenMesh not_a_number{{{std::numeric_limits<float>::quiet_NaN(), 0.0f}, {9.0f, -9.0f}, {9.0f, 9.0f}}, {0, 1, 2}};
+    const HiddenMesh not_a_number{
+        {{std::numeric_limits<float>::quiet_NaN(), 0.0f}, {9.0f, -9.0f}, {9.0f, 9.0f}}, {0, 1, 2}};
     const HiddenMesh flat{{{-9.0f, -9.0f}, {0.0f, 0.0f}, {9.0f, 9.0f}}, {0, 1, 2}};
     for (const HiddenMesh& mesh : {HiddenMesh{}, out_of_range, not_a_number, flat}) {
         CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));

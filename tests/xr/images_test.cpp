@@ -4,7 +4,9 @@
 
 SUITE(images) {
 
-TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, down to a single one, in the light that they stand for") {
+TEST_CASE_FIXTURE(Gpu,
+                  "smaller copies of a picture are the mean of its pixels, down to a single one, in the "
+                  "light that they stand for") {
     constexpr glm::uvec2 kSize(8, 4);
     constexpr std::uint32_t kLevels = 4;
     REQUIRE(canMakeMips(context(), DeviceImage::kFormat));
@@ -23,7 +25,9 @@ TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, 
         image.copyLevel(commands, 3, {1, 1}, out, 2 * sizeof(std::uint32_t));
     });
     const std::vector<std::uint32_t> small = readBack<std::uint32_t>(out, 3);
-    const auto isNear = [](std::uint32_t texel, int grey) { return std::abs(static_cast<int>(texel & 255) - grey) <= 2; };
+    const auto isNear = [](std::uint32_t texel, int grey) {
+        return std::abs(static_cast<int>(texel & 255) - grey) <= 2;
+    };
     // Half and three quarters of white's light, in sRGB.
     CHECK(isNear(small[0], 188));
     CHECK(small[1] == 0xffffffffu);

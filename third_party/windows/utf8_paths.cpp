@@ -20,7 +20,8 @@ std::size_t lengthOf(unsigned char first) {
 
 }  // namespace
 
-extern "C" std::size_t __wrap_mbrtowc(wchar_t* target, const char* bytes, std::size_t most, std::mbstate_t* state) {
+extern "C" std::size_t __wrap_mbrtowc(wchar_t* target, const char* bytes, std::size_t most,
+                                      std::mbstate_t* state) {
     if (bytes == nullptr) { return 0; }
     if (most == 0) { return kMissing; }
     if (state != nullptr && *state != 0) {
@@ -38,7 +39,9 @@ extern "C" std::size_t __wrap_mbrtowc(wchar_t* target, const char* bytes, std::s
         letter = letter << 6 | (byteAt(i) & 0x3f);
     }
     constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-    if (letter < kLeast[length] || letter > 0x10ffff || (letter >= 0xd800 && letter <= 0xdfff)) { return kWrong; }
+    if (letter < kLeast[length] || letter > 0x10ffff || (letter >= 0xd800 && letter <= 0xdfff)) {
+        return kWrong;
+    }
     if (letter < 0x10000) {
         if (target != nullptr) { *target = static_cast<wchar_t>(letter); }
         return letter == 0 ? 0 : length;

@@ -22,7 +22,8 @@ void Passthrough::make() {
     of_layer.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
     of_layer.purpose = XR_PASSTHROUGH_LAYER_PURPOSE_RECONSTRUCTION_FB;
     layer_ = structure<XrCompositionLayerPassthroughFB>(XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB);
-    const auto create_layer = instance_.function<PFN_xrCreatePassthroughLayerFB>("xrCreatePassthroughLayerFB");
+    const auto create_layer =
+        instance_.function<PFN_xrCreatePassthroughLayerFB>("xrCreatePassthroughLayerFB");
     checkResult(create_layer(session_, &of_layer, &layer_.layerHandle), "xrCreatePassthroughLayerFB");
     layer_.flags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
 }

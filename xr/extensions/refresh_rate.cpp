@@ -11,8 +11,10 @@ std::vector<double> RefreshRate::list() const {
     if (!isThere()) { return {}; }
     std::vector<float> rates;
     instance_.troubles().tryFor("a choice of refresh rates", [&] {
-        const auto get = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
-        rates = listAll<float>([&](auto... step) { checkResult(get(session_, step...), "xrEnumerateDisplayRefreshRatesFB"); });
+        const auto get =
+            instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
+        rates = listAll<float>(
+            [&](auto... step) { checkResult(get(session_, step...), "xrEnumerateDisplayRefreshRatesFB"); });
     });
     return {rates.begin(), rates.end()};
 }
@@ -36,7 +38,9 @@ std::string RefreshRate::request(double rate_hz) {
     const auto found = std::ranges::find_if(rates, isIt);
     if (rate_hz != 0.0 && found == rates.end()) {
         std::string offered;
-        for (const double rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
+        for (const double rate : rates) {
+            offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate);
+        }
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
     PFN_xrVoidFunction ask = nullptr;
@@ -46,7 +50,9 @@ std::string RefreshRate::request(double rate_hz) {
         result = reinterpret_cast<PFN_xrRequestDisplayRefreshRateFB>(ask)(session_, asked_hz);
     }
     if (XR_SUCCEEDED(result)) { return {}; }
-    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrRequestDisplayRefreshRateFB"); }
+    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) {
+        checkResult(result, "xrRequestDisplayRefreshRateFB");
+    }
     return fmt::format("refresh-rate is {:g}, this headset refuses it ({})", rate_hz, nameOf(result));
 }
 

@@ -21,7 +21,9 @@ public:
     std::string request(double rate_hz);
 
 private:
-    [[nodiscard]] bool isThere() const { return instance_.hasExtension(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME); }
+    [[nodiscard]] bool isThere() const {
+        return instance_.hasExtension(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME);
+    }
 
     const Instance& instance_;
     XrSession session_;

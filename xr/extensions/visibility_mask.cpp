@@ -15,11 +15,14 @@ void HiddenMeshes::read(std::uint32_t eye) {
     ++version_;
     // Some runtimes list the extension but lack its function.
     PFN_xrVoidFunction found = nullptr;
-    if (XR_FAILED(xrGetInstanceProcAddr(instance_.handle(), "xrGetVisibilityMaskKHR", &found)) || found == nullptr) { return; }
+    if (XR_FAILED(xrGetInstanceProcAddr(instance_.handle(), "xrGetVisibilityMaskKHR", &found)) ||
+        found == nullptr) {
+        return;
+    }
     auto mask = structure<XrVisibilityMaskKHR>(XR_TYPE_VISIBILITY_MASK_KHR);
     const auto get = [&] {
-        return reinterpret_cast<PFN_xrGetVisibilityMaskKHR>(found)(session_, views_, eye, XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR,
-                                                                   &mask);
+        return reinterpret_cast<PFN_xrGetVisibilityMaskKHR>(found)(
+            session_, views_, eye, XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask);
     };
     if (XR_FAILED(get()) || mask.indexCountOutput == 0) { return; }
     mesh.vertices.resize(mask.vertexCountOutput);

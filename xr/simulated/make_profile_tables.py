@@ -142,7 +142,7 @@ def write_row(items):
     """As many to a line as fit."""
     line = "   "
     for item in items:
-        if len(line) + len(item) > 139:
+        if len(line) + len(item) > 109:
             print(line)
             line = "   "
         line += f" {item},"

@@ -6,7 +6,8 @@
 
 #ifndef XR_VERSION_1_1
 
-constexpr XrReferenceSpaceType XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR = static_cast<XrReferenceSpaceType>(1000426000);
+constexpr XrReferenceSpaceType XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR =
+    static_cast<XrReferenceSpaceType>(1000426000);
 constexpr XrViewConfigurationType XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET =
     static_cast<XrViewConfigurationType>(1000037000);
 constexpr XrResult XR_ERROR_PERMISSION_INSUFFICIENT = static_cast<XrResult>(-1000710000);
@@ -49,7 +50,8 @@ struct XrSpaceVelocities {
     XrSpaceVelocityData* velocities;
 };
 
-using PFN_xrLocateSpaces = XrResult (*)(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations);
+using PFN_xrLocateSpaces = XrResult (*)(XrSession session, const XrSpacesLocateInfo* locateInfo,
+                                        XrSpaceLocations* spaceLocations);
 
 #endif
 
@@ -68,8 +70,10 @@ using PFN_xrLocateSpacesKHR = PFN_xrLocateSpaces;
 
 #ifndef XR_EXT_user_presence
 #define XR_EXT_USER_PRESENCE_EXTENSION_NAME "XR_EXT_user_presence"
-constexpr XrStructureType XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT = static_cast<XrStructureType>(1000470000);
-constexpr XrStructureType XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT = static_cast<XrStructureType>(1000470001);
+constexpr XrStructureType XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT =
+    static_cast<XrStructureType>(1000470000);
+constexpr XrStructureType XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT =
+    static_cast<XrStructureType>(1000470001);
 
 struct XrEventDataUserPresenceChangedEXT {
     XrStructureType type;

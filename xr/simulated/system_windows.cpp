@@ -18,18 +18,20 @@ std::optional<std::string> readEnvironmentVariable(const std::string& name) {
     const std::wstring wide(name.begin(), name.end());  // ours are ASCII
     std::wstring value(32767, L'\0');                   // the longest there is
     ::SetLastError(ERROR_SUCCESS);
-    const DWORD length = ::GetEnvironmentVariableW(wide.c_str(), value.data(), static_cast<DWORD>(value.size()));
+    const DWORD length =
+        ::GetEnvironmentVariableW(wide.c_str(), value.data(), static_cast<DWORD>(value.size()));
     if (length == 0 && ::GetLastError() != ERROR_SUCCESS) { return std::nullopt; }
     std::string text(std::size_t{3} * length, '\0');
-    text.resize(static_cast<std::size_t>(::WideCharToMultiByte(CP_UTF8, 0, value.data(), static_cast<int>(length), text.data(),
-                                                               static_cast<int>(text.size()), nullptr, nullptr)));
+    text.resize(static_cast<std::size_t>(
+        ::WideCharToMultiByte(CP_UTF8, 0, value.data(), static_cast<int>(length), text.data(),
+                              static_cast<int>(text.size()), nullptr, nullptr)));
     return text;
 }
 
 std::FILE* createFile(const std::filesystem::path& path) {
     int descriptor = -1;
-    errno =
-        ::_wsopen_s(&descriptor, path.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD | _S_IWRITE);
+    errno = ::_wsopen_s(&descriptor, path.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+                        _SH_DENYNO, _S_IREAD | _S_IWRITE);
     return descriptor >= 0 ? ::_fdopen(descriptor, "wb") : nullptr;
 }
 

@@ -50,7 +50,8 @@ void FileWorker::run() {
 void FileWorker::dropReading() {
     if (tasks_.empty()) { return; }
     const auto second = tasks_.begin() + 1;
-    tasks_.erase(std::remove_if(second, tasks_.end(), [](const Task& task) { return !task.writes; }), tasks_.end());
+    tasks_.erase(std::remove_if(second, tasks_.end(), [](const Task& task) { return !task.writes; }),
+                 tasks_.end());
 }
 
 std::string FileWorker::now() const {

@@ -27,7 +27,9 @@ std::string freeName(const fs::path& folder, const std::string& name) {
     for (int number = 1;; ++number) {
         const std::string numbered = number == 1 ? name : fmt::format("{}-{}", name, number);
         std::error_code ignored;  // if looking fails, writing will fail too, and will say why
-        if (!fs::exists(folder / (numbered + extensionOf(PictureKind::kDisplay)), ignored)) { return numbered; }
+        if (!fs::exists(folder / (numbered + extensionOf(PictureKind::kDisplay)), ignored)) {
+            return numbered;
+        }
     }
 }
 
@@ -36,10 +38,12 @@ std::string write(const PictureShot& shot, const std::string& name) {
     try {
         const std::vector<Image> eyes = shot.take();
         const fs::path folder = userPicturesFolder();
-        check(!folder.empty(), "the picture cannot be written: there is no folder for pictures, since HOME is not set");
+        check(!folder.empty(),
+              "the picture cannot be written: there is no folder for pictures, since HOME is not set");
         OutputFiles files(folder);
         const Image picture = eyes.size() == 1 ? eyes.front() : besideOneAnother(eyes[0], eyes[1]);
-        const auto written = writePicture(files.staging() / freeName(folder, name), PictureKind::kDisplay, picture);
+        const auto written =
+            writePicture(files.staging() / freeName(folder, name), PictureKind::kDisplay, picture);
         files.publish();
         return "picture " + (folder / written.front().filename()).string();
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
@@ -55,22 +59,29 @@ std::string pictureName(const std::string& scene, const std::tm& when) {
     const auto lastPart = [](std::string path) {
         while (!path.empty() && (path.back() == '/' || path.back() == '\\')) { path.pop_back(); }
         const std::size_t slash = path.find_last_of("/\\:");
-        return slash == std::string::npos ? std::pair(std::string(), path) : std::pair(path.substr(0, slash), path.substr(slash + 1));
+        return slash == std::string::npos ? std::pair(std::string(), path)
+                                          : std::pair(path.substr(0, slash), path.substr(slash + 1));
     };
     auto [folder, name] = lastPart(scene);
     // What all folders of a kind call their file says nothing.
-    if (name == "meta.json" || name == "lod-meta.json" || name == "point_cloud.ply") { name = lastPart(folder).second; }
+    if (name == "meta.json" || name == "lod-meta.json" || name == "point_cloud.ply") {
+        name = lastPart(folder).second;
+    }
     if (const std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0) { name.resize(dot); }
     for (char& letter : name) {  // Windows has no others in names
-        if (static_cast<unsigned char>(letter) < 0x20 || std::string_view("<>\"|?*").find(letter) != std::string_view::npos) {
+        if (static_cast<unsigned char>(letter) < 0x20 ||
+            std::string_view("<>\"|?*").find(letter) != std::string_view::npos) {
             letter = '_';
         }
     }
     std::size_t bytes = std::min(name.size(), kLongestName);
-    while (bytes > 0 && bytes < name.size() && (static_cast<unsigned char>(name[bytes]) & 0xc0) == 0x80) { --bytes; }
+    while (bytes > 0 && bytes < name.size() && (static_cast<unsigned char>(name[bytes]) & 0xc0) == 0x80) {
+        --bytes;
+    }
     name.resize(bytes);
-    return fmt::format("{}{}{:04}-{:02}-{:02}-{:02}{:02}{:02}", name, name.empty() ? "" : "-", when.tm_year + 1900, when.tm_mon + 1,
-                       when.tm_mday, when.tm_hour, when.tm_min, when.tm_sec);
+    return fmt::format("{}{}{:04}-{:02}-{:02}-{:02}{:02}{:02}", name, name.empty() ? "" : "-",
+                       when.tm_year + 1900, when.tm_mon + 1, when.tm_mday, when.tm_hour, when.tm_min,
+                       when.tm_sec);
 }
 
 void PictureWriter::begin(PictureShot shot, const std::string& scene) {
@@ -81,12 +92,14 @@ void PictureWriter::begin(PictureShot shot, const std::string& scene) {
 
 void PictureWriter::beginNext() {
     if (under_way_.valid() || waiting_.empty()) { return; }
-    under_way_ = std::async(std::launch::async, [task = std::move(waiting_.front())] { return write(task.shot, task.name); });
+    under_way_ = std::async(std::launch::async,
+                            [task = std::move(waiting_.front())] { return write(task.shot, task.name); });
     waiting_.pop_front();
 }
 
 std::optional<std::string> PictureWriter::takeOutcome() {
-    const bool is_done = under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    const bool is_done =
+        under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     return is_done ? finish() : std::nullopt;
 }
 

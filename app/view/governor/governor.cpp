@@ -24,11 +24,13 @@ constexpr double kLeastRise = 1.1, kSpent = 0.75;
 constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
 constexpr int kSettlingFrames = 1;
 constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kCalmFrames = 8;
-constexpr std::size_t kWindow = MissedDisplays::kWindow, kOftenOver = MissedDisplays::kOftenOver, kOftenOf = MissedDisplays::kOftenOf;
+constexpr std::size_t kWindow = MissedDisplays::kWindow, kOftenOver = MissedDisplays::kOftenOver,
+                      kOftenOf = MissedDisplays::kOftenOf;
 // As many frames as there are in half a second, if these are fewer than kWindow.
 constexpr std::size_t kFewestFrames = 12;
 constexpr double kWindowSeconds = 0.5;
-constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstWaitSeconds = 10.0, kLongestWaitSeconds = 300.0;
+constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstWaitSeconds = 10.0,
+                 kLongestWaitSeconds = 300.0;
 // If the lowest settings miss as many displays as the best ones did, others cause the misses. Pacing may
 // react to frame times only after some frames.
 constexpr std::size_t kBlameFrames = 20;
@@ -111,12 +113,14 @@ void Governor::clearRecent() {
 
 std::size_t Governor::countOver(std::size_t of_last) const {
     const std::size_t count = std::min(of_last, recent_ms_.size());
-    return static_cast<std::size_t>(
-        std::count_if(recent_ms_.end() - static_cast<std::ptrdiff_t>(count), recent_ms_.end(), [&](double ms) { return ms > period_ms_; }));
+    return static_cast<std::size_t>(std::count_if(recent_ms_.end() - static_cast<std::ptrdiff_t>(count),
+                                                  recent_ms_.end(),
+                                                  [&](double ms) { return ms > period_ms_; }));
 }
 
 bool Governor::missesWhateverIsDrawn() const {
-    return beaten_ && before_misses_ && before_misses_->settings != settings_ && misses_.framesSeen() >= kBlameFrames &&
+    return beaten_ && before_misses_ && before_misses_->settings != settings_ &&
+           misses_.framesSeen() >= kBlameFrames &&
            misses_.usuallyLost(MissedDisplays::kOftenOf) >= before_misses_->lost - kSameLost;
 }
 
@@ -129,8 +133,11 @@ void Governor::leaveMissesAlone() {
 
 double Governor::scaleFor(double ratio) const {
     const double tenths_now = std::round(10.0 * settings_.resolution_scale / own_.resolution_scale);
-    const double tenths = std::floor(tenths_now * std::pow(ratio, 1.0 / (ratio < 1.0 ? kPowerDown : kPowerUp)) + 1e-6);
-    return std::round(10.0 * own_.resolution_scale * std::clamp(tenths, 10.0 * limitsOf(quality_).scale, 10.0)) / 100.0;
+    const double tenths =
+        std::floor(tenths_now * std::pow(ratio, 1.0 / (ratio < 1.0 ? kPowerDown : kPowerUp)) + 1e-6);
+    return std::round(10.0 * own_.resolution_scale *
+                      std::clamp(tenths, 10.0 * limitsOf(quality_).scale, 10.0)) /
+           100.0;
 }
 
 KnobLimits Governor::knobLimits() const {
@@ -138,14 +145,20 @@ KnobLimits Governor::knobLimits() const {
     return {limits.scale, own_.resolution_scale, limits.bound_db};
 }
 
-GovernedSettings Governor::with(const Knobs& knobs) const { return {settings_.budget, knobs.scale, knobs.bound_db}; }
+GovernedSettings Governor::with(const Knobs& knobs) const {
+    return {settings_.budget, knobs.scale, knobs.bound_db};
+}
 
-GovernedSettings Governor::bestWithin(double most_ms) const { return with(model_.best(most_ms, knobLimits())); }
+GovernedSettings Governor::bestWithin(double most_ms) const {
+    return with(model_.best(most_ms, knobLimits()));
+}
 
 bool Governor::isBetter(const GovernedSettings& to) const {
     const double enough_db = std::min(settings_.error_bound_db + kMoreDb, limitsOf(quality_).bound_db);
-    const bool is_more = to != settings_ && to.resolution_scale >= settings_.resolution_scale && to.error_bound_db >= enough_db;
-    return is_more || model_.expectedError({to.resolution_scale, to.error_bound_db}) < kBetter * model_.expectedError(knobs());
+    const bool is_more = to != settings_ && to.resolution_scale >= settings_.resolution_scale &&
+                         to.error_bound_db >= enough_db;
+    return is_more || model_.expectedError({to.resolution_scale, to.error_bound_db}) <
+                          kBetter * model_.expectedError(knobs());
 }
 
 GovernedSettings Governor::lowered(double ratio, double work, bool as_usual) const {
@@ -153,7 +166,8 @@ GovernedSettings Governor::lowered(double ratio, double work, bool as_usual) con
     if (turnsKnobs()) { return bestWithin(ratio * model_.expectedMs(knobs())); }
     GovernedSettings to = settings_;
     if (hasBudget(mode_)) {
-        const double taken = std::min(work, to.budget) + fixedWork(mode_), least = std::min(limitsOf(quality_).budget, to.budget);
+        const double taken = std::min(work, to.budget) + fixedWork(mode_),
+                     least = std::min(limitsOf(quality_).budget, to.budget);
         to.budget = std::clamp(inHundredths(taken * ratio - fixedWork(mode_)), least, to.budget);
         ratio *= taken / (std::min(work, to.budget) + fixedWork(mode_));
     }
@@ -189,17 +203,23 @@ void Governor::measure(const GovernedFrame& frame) {
     }
     keep(recent_ms_, frame.gpu_ms);
     keep(recent_work_, frame.work);
-    if (turnsKnobs()) { model_.add(knobs(), {frame.gpu_ms, seconds, frame.work, frame.warp_error, frame.half_loss}); }
+    if (turnsKnobs()) {
+        model_.add(knobs(), {frame.gpu_ms, seconds, frame.work, frame.warp_error, frame.half_loss});
+    }
     misses_.add(frame.lost_periods, now_s_);
     if (!misses_.areLeftAlone() && why_ == kOthersMiss) { why_.clear(); }
 
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
-    const bool takes_too_long = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
+    const bool takes_too_long =
+        countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
     const bool is_over = takes_too_long || (!misses_.areLeftAlone() && misses_.come(at_once));
     const double now_ms = medianOf(recent_ms_, is_over ? at_once : kWindow);
     if (!is_over) { return giveBack(now_ms); }
     if (!takes_too_long) {
-        if (!before_misses_) { before_misses_ = {settings_, misses_.usuallyLost(misses_.comeAtOnce(at_once) ? kOverAtOnce : kOftenOf)}; }
+        if (!before_misses_) {
+            before_misses_ = {settings_,
+                              misses_.usuallyLost(misses_.comeAtOnce(at_once) ? kOverAtOnce : kOftenOf)};
+        }
         misses_.lowerShare(now_ms, period_ms_);
     }
     misses_.hold();
@@ -226,28 +246,34 @@ void Governor::giveBack(double now_ms) {
     if (recent_ms_.size() >= kCalmFrames) { downs_ = 0; }
     if (recent_ms_.size() >= kBlameFrames) { before_misses_.reset(); }
     if (is_raised_ && now_s_ - changed_s_ >= wait_s_ + kProvenSeconds) { wait_s_ = 0.0; }
-    const auto enough =
-        static_cast<std::size_t>(std::clamp(std::round(1e3 * kWindowSeconds / period_ms_), 1.0 * kFewestFrames, 1.0 * kWindow));
-    if (now_s_ - changed_s_ < kBetweenChangesSeconds || recent_ms_.size() < enough) { return describe(now_ms, why_); }
+    const auto enough = static_cast<std::size_t>(
+        std::clamp(std::round(1e3 * kWindowSeconds / period_ms_), 1.0 * kFewestFrames, 1.0 * kWindow));
+    if (now_s_ - changed_s_ < kBetweenChangesSeconds || recent_ms_.size() < enough) {
+        return describe(now_ms, why_);
+    }
     const double work = medianOf(recent_work_, kWindow);
     // Within the period, but with less than a tenth to spare.
     if (now_ms > kTarget * period_ms_) {
         const GovernedSettings to = lowered(kCalmly * roomMs() / now_ms, work);
-        if (to != settings_) { return stepDown(to, fmt::format("{:.1f} of {:.1f} ms left too little to spare", now_ms, period_ms_)); }
+        if (to != settings_) {
+            return stepDown(to,
+                            fmt::format("{:.1f} of {:.1f} ms left too little to spare", now_ms, period_ms_));
+        }
     } else if (now_s_ - lowered_s_ >= wait_s_ && turnsKnobs()) {
         const GovernedSettings calm = bestWithin(kCalmly * roomMs()), bold = bestWithin(kBoldly * roomMs());
-        const bool is_bold =
-            model_.expectedError({bold.resolution_scale, bold.error_bound_db}) < kMuchBetter * model_.expectedError(knobs());
+        const bool is_bold = model_.expectedError({bold.resolution_scale, bold.error_bound_db}) <
+                             kMuchBetter * model_.expectedError(knobs());
         if (is_bold || isBetter(calm)) {
             const GovernedSettings& to = is_bold ? bold : calm;
-            is_raised_ = model_.expectedMs({to.resolution_scale, to.error_bound_db}) > model_.expectedMs(knobs());
+            is_raised_ =
+                model_.expectedMs({to.resolution_scale, to.error_bound_db}) > model_.expectedMs(knobs());
             return step(to, fmt::format("better for the same time, {:.1f} of {:.1f} ms", now_ms, period_ms_));
         }
     } else if (now_s_ - lowered_s_ >= wait_s_) {
         // A still head leaves nothing to re-render: once it moves, frames take what the budget allows.
-        const double spent_ms = hasBudget(mode_)
-                                    ? now_ms * (settings_.budget + fixedWork(mode_)) / (std::min(work, settings_.budget) + fixedWork(mode_))
-                                    : now_ms;
+        const double spent_ms = hasBudget(mode_) ? now_ms * (settings_.budget + fixedWork(mode_)) /
+                                                       (std::min(work, settings_.budget) + fixedWork(mode_))
+                                                 : now_ms;
         const GovernedSettings to = raised(kCalmly * roomMs() / spent_ms);
         if (to != settings_) {
             is_raised_ = true;
@@ -259,7 +285,9 @@ void Governor::giveBack(double now_ms) {
 
 void Governor::stepDown(const GovernedSettings& to, const std::string& why) {
     // If quality was given back too early, it is given back later the next time.
-    if (is_raised_ && now_s_ - changed_s_ < kProvenSeconds) { wait_s_ = std::clamp(2.0 * wait_s_, kFirstWaitSeconds, kLongestWaitSeconds); }
+    if (is_raised_ && now_s_ - changed_s_ < kProvenSeconds) {
+        wait_s_ = std::clamp(2.0 * wait_s_, kFirstWaitSeconds, kLongestWaitSeconds);
+    }
     is_raised_ = false;
     lowered_s_ = now_s_;
     step(to, why);
@@ -279,13 +307,15 @@ std::string Governor::describeSettings() const {
     if (turnsKnobs()) {
         text += fmt::format(", errors within {:.0f} dB", settings_.error_bound_db);
     } else if (hasBudget(mode_)) {
-        text += fmt::format(", {} of {}", percent(settings_.budget), mode_ == Mode::kTemporal ? "both eyes" : "an eye");
+        text += fmt::format(", {} of {}", percent(settings_.budget),
+                            mode_ == Mode::kTemporal ? "both eyes" : "an eye");
     }
     return text;
 }
 
 void Governor::describe(double now_ms, const std::string& why) {
-    sentence_ = fmt::format("{}: {:.1f} of {:.1f} ms{}{}", describeSettings(), now_ms, period_ms_, why.empty() ? "" : "; ", why);
+    sentence_ = fmt::format("{}: {:.1f} of {:.1f} ms{}{}", describeSettings(), now_ms, period_ms_,
+                            why.empty() ? "" : "; ", why);
 }
 
 }  // namespace binosplat

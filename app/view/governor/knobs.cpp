@@ -45,7 +45,9 @@ void pushNew(std::deque<double>& values, double value) {
 // What half of a resolution loses is 7 / scale^3 times this.
 double lossOf(double half_loss, double scale) { return half_loss * scale * scale * scale / 7.0; }
 
-double follow(double value, double now) { return now > value ? value + kSmoothing * (now - value) : std::max(now, value * kFading); }
+double follow(double value, double now) {
+    return now > value ? value + kSmoothing * (now - value) : std::max(now, value * kFading);
+}
 
 }  // namespace
 
@@ -67,7 +69,8 @@ double KnobModel::workAt(double bound_db) const {
 void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     if (!knows()) {
         work_ = frame.work;
-        warp_error_ = frame.warp_error > 0.0 ? frame.warp_error : std::pow(10.0, -0.1 * (knobs.bound_db + kUsualBelowBoundDb));
+        warp_error_ = frame.warp_error > 0.0 ? frame.warp_error
+                                             : std::pow(10.0, -0.1 * (knobs.bound_db + kUsualBelowBoundDb));
         loss_ = kUsualLoss;
     } else if (visits_.back().knobs != knobs) {
         work_ = workAt(knobs.bound_db);
@@ -75,14 +78,18 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     }
     enter(knobs);
     noteChange(frame);
-    for (Visit& visit : visits_) { visit.weight = std::max(visit.weight * std::pow(kForgottenPerSecond, frame.seconds), kLeastWeight); }
+    for (Visit& visit : visits_) {
+        visit.weight = std::max(visit.weight * std::pow(kForgottenPerSecond, frame.seconds), kLeastWeight);
+    }
     Visit& now = visits_.back();
     pushNew(now.all_ms, frame.ms);
     pushNew(now.all_work, frame.work);
     now.ms = lowerMedianOf(now.all_ms);
     now.work = lowerMedianOf(now.all_work);
     now.weight = 1.0;
-    if (visits_.size() > 1 && now.all_ms.size() == kSeenForChange) { learnWork(visits_[visits_.size() - 2], now); }
+    if (visits_.size() > 1 && now.all_ms.size() == kSeenForChange) {
+        learnWork(visits_[visits_.size() - 2], now);
+    }
     work_ = follow(work_, frame.work);
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
     // Once losses are measured, a frame without one had no loss on its few tiles.
@@ -123,9 +130,12 @@ void KnobModel::scaleTimes(double ratio, std::size_t visits) {
 
 void KnobModel::noteChange(const KnobFrame& frame) {
     const Visit& now = visits_.back();
-    const auto ratioTo = [&](const Terms& shares, double ms, double work) { return ms / sumOf(termsOf(now.knobs.scale, work), shares); };
+    const auto ratioTo = [&](const Terms& shares, double ms, double work) {
+        return ms / sumOf(termsOf(now.knobs.scale, work), shares);
+    };
     if (now.all_ms.size() == kSeenForChange && doubted_ratio_ != 1.0) {
-        const double seen = std::log(ratioTo(shares_before_, now.ms, now.work)), doubted = std::log(doubted_ratio_);
+        const double seen = std::log(ratioTo(shares_before_, now.ms, now.work)),
+                     doubted = std::log(doubted_ratio_);
         if (std::abs(seen - doubted) < std::abs(seen)) { scaleTimes(doubted_ratio_, visits_.size() - 1); }
         doubted_ratio_ = 1.0;
     }
@@ -175,10 +185,13 @@ void KnobModel::fit() {
 
 double KnobModel::expectedError(const Knobs& knobs) const {
     const double over_db = knobs.bound_db - visits_.back().knobs.bound_db;
-    return loss_ * (std::pow(knobs.scale, -3.0) - 1.0) + warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
+    return loss_ * (std::pow(knobs.scale, -3.0) - 1.0) +
+           warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
 }
 
-Knobs KnobModel::best(double most_ms, const KnobLimits& limits) const { return bestBy(shares_, most_ms, limits); }
+Knobs KnobModel::best(double most_ms, const KnobLimits& limits) const {
+    return bestBy(shares_, most_ms, limits);
+}
 
 Knobs KnobModel::bestAsUsual(double ratio, const KnobLimits& limits) const {
     const Terms usual = usualShares();
@@ -194,7 +207,8 @@ Knobs KnobModel::bestBy(const Terms& shares, double most_ms, const KnobLimits& l
     };
     for (double tenths = 10.0; tenths >= 10.0 * limits.least_scale - 1e-6; --tenths) {
         const double scale = std::round(10.0 * limits.whole * tenths) / 100.0;
-        for (double bound_db = limits.most_bound_db; bound_db >= std::min(kLeastBoundDb, limits.most_bound_db); --bound_db) {
+        for (double bound_db = limits.most_bound_db;
+             bound_db >= std::min(kLeastBoundDb, limits.most_bound_db); --bound_db) {
             consider({scale, bound_db});
         }
         quickest.scale = scale;

@@ -26,13 +26,16 @@ public:
         const double longest_ms = kLatePeriods * std::max(period_ms, std::exchange(period_ms_, period_ms));
         frames_.push_back({display_time_ns, is_known && 1e-6 * static_cast<double>(step_ns) > longest_ms});
         // The last second's, and the one before these.
-        while (frames_.size() > 2 && frames_[1].time_ns <= display_time_ns - kSecondNs) { frames_.pop_front(); }
+        while (frames_.size() > 2 && frames_[1].time_ns <= display_time_ns - kSecondNs) {
+            frames_.pop_front();
+        }
     }
     // 0: not known yet.
     [[nodiscard]] double displayHz() const { return period_ms_ > 0.0 ? 1000.0 / period_ms_ : 0.0; }
     [[nodiscard]] double metHz() const {
         if (frames_.size() < 2) { return 0.0; }
-        return 1e9 * static_cast<double>(frames_.size() - 1) / static_cast<double>(frames_.back().time_ns - frames_.front().time_ns);
+        return 1e9 * static_cast<double>(frames_.size() - 1) /
+               static_cast<double>(frames_.back().time_ns - frames_.front().time_ns);
     }
     // Frames of the last second that were displayed more than a period after the one before.
     [[nodiscard]] int late() const {
@@ -65,12 +68,17 @@ struct FrameCost {
 // Why a frame of this cost was late.
 inline std::string whyLate(const FrameCost& cost, double period_ms) {
     if (cost.gpu_ms > period_ms) { return fmt::format("the GPU took {:.1f} ms", cost.gpu_ms); }
-    if (cost.busy_ms > period_ms) { return fmt::format("the program took {:.1f} ms of processor time", cost.busy_ms); }
-    if (cost.open_ms > period_ms) {
-        return fmt::format("the program was held up: it took {:.1f} ms, {:.1f} of processor time", cost.open_ms, cost.busy_ms);
+    if (cost.busy_ms > period_ms) {
+        return fmt::format("the program took {:.1f} ms of processor time", cost.busy_ms);
     }
-    return fmt::format("neither the GPU ({:.1f} ms) nor the program ({:.1f} ms) took that long; another program or the runtime did",
-                       cost.gpu_ms, cost.open_ms);
+    if (cost.open_ms > period_ms) {
+        return fmt::format("the program was held up: it took {:.1f} ms, {:.1f} of processor time",
+                           cost.open_ms, cost.busy_ms);
+    }
+    return fmt::format(
+        "neither the GPU ({:.1f} ms) nor the program ({:.1f} ms) took that long; another program or the "
+        "runtime did",
+        cost.gpu_ms, cost.open_ms);
 }
 
 }  // namespace binosplat

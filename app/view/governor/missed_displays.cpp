@@ -15,7 +15,8 @@ namespace {
 constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
 // If displays are missed, there is less time than was used; after a while without a miss, the share grows
 // each second.
-constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1, kFirstHoldSeconds = 10.0, kLongestHoldSeconds = 300.0;
+constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1, kFirstHoldSeconds = 10.0,
+                 kLongestHoldSeconds = 300.0;
 constexpr double kFirstUnheededSeconds = 60.0, kLongestUnheededSeconds = 600.0;
 
 }  // namespace
@@ -49,7 +50,8 @@ double MissedDisplays::usuallyLost(std::size_t last) const {
     std::vector<double> sorted(recent_.end() - count, recent_.end());
     std::ranges::sort(sorted);
     const auto usual = static_cast<std::ptrdiff_t>(sorted.size() - sorted.size() / 3);
-    return std::accumulate(sorted.begin(), sorted.begin() + usual, 0.0) / static_cast<double>(std::max<std::ptrdiff_t>(usual, 1));
+    return std::accumulate(sorted.begin(), sorted.begin() + usual, 0.0) /
+           static_cast<double>(std::max<std::ptrdiff_t>(usual, 1));
 }
 
 bool MissedDisplays::areLost(std::size_t lost, std::size_t of_last) const {
@@ -60,7 +62,8 @@ void MissedDisplays::lowerShare(double now_ms, double period_ms) {
     if (share_ * period_ms < now_ms) { return; }  // the share is already lower
     share_ = kLowerShare * now_ms / period_ms;
     // If time was given back too early, it is given back later the next time.
-    hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestHoldSeconds) : std::max(hold_s_, kFirstHoldSeconds);
+    hold_s_ =
+        is_raised_ ? std::min(2.0 * hold_s_, kLongestHoldSeconds) : std::max(hold_s_, kFirstHoldSeconds);
     is_raised_ = false;
 }
 

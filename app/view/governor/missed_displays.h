@@ -22,7 +22,9 @@ public:
     // Each of the last `frames` missed a display.
     [[nodiscard]] bool comeAtOnce(std::size_t frames) const { return areLost(frames, frames); }
     // The same, or misses come often.
-    [[nodiscard]] bool come(std::size_t at_once) const { return comeAtOnce(at_once) || areLost(kOftenOver, kOftenOf); }
+    [[nodiscard]] bool come(std::size_t at_once) const {
+        return comeAtOnce(at_once) || areLost(kOftenOver, kOftenOf);
+    }
     [[nodiscard]] std::size_t framesSeen() const { return recent_.size(); }
     // The average loss per frame over those two thirds of the `last` frames that lost least.
     [[nodiscard]] double usuallyLost(std::size_t last) const;

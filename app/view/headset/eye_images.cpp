@@ -8,10 +8,12 @@ namespace binosplat {
 
 vk::Format chooseEyeFormat(const xr::Session& session) {
     using Format = vk::Format;
-    const std::array wanted{Format::eR8G8B8A8Srgb, Format::eB8G8R8A8Srgb, Format::eR8G8B8A8Unorm, Format::eB8G8R8A8Unorm};
+    const std::array wanted{Format::eR8G8B8A8Srgb, Format::eB8G8R8A8Srgb, Format::eR8G8B8A8Unorm,
+                            Format::eB8G8R8A8Unorm};
     const Format format = xr::chooseFormat(session, wanted);
     if (format == Format::eUndefined) {
-        throw Error(ExitCode::kNoDevice, session.instance().description() + " has no 8-bit RGBA or BGRA images");
+        throw Error(ExitCode::kNoDevice,
+                    session.instance().description() + " has no 8-bit RGBA or BGRA images");
     }
     return format;
 }
@@ -19,13 +21,19 @@ vk::Format chooseEyeFormat(const xr::Session& session) {
 EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px)
     : presenter_(presenter), size_px_(size_px), part_px_(size_px) {
     const std::array depth_formats{vk::Format::eD32Sfloat};
-    const bool depth = session.instance().takesDepth() && xr::chooseFormat(session, depth_formats) == vk::Format::eD32Sfloat;
-    const auto nameOf = [](std::size_t e) -> std::string { return e == kLeft ? "the left eye" : "the right eye"; };
-    for (std::size_t e = 0; e < 2; ++e) { colour_[e] = xr::Swapchain(session, nameOf(e), size_px, format, xr::ImageUse::kCopy); }
+    const bool depth =
+        session.instance().takesDepth() && xr::chooseFormat(session, depth_formats) == vk::Format::eD32Sfloat;
+    const auto nameOf = [](std::size_t e) -> std::string {
+        return e == kLeft ? "the left eye" : "the right eye";
+    };
+    for (std::size_t e = 0; e < 2; ++e) {
+        colour_[e] = xr::Swapchain(session, nameOf(e), size_px, format, xr::ImageUse::kCopy);
+    }
     if (!depth) { return; }
     try {
         for (std::size_t e = 0; e < 2; ++e) {
-            depth_[e] = xr::Swapchain(session, nameOf(e) + "'s depth", size_px, vk::Format::eD32Sfloat, xr::ImageUse::kDepth);
+            depth_[e] = xr::Swapchain(session, nameOf(e) + "'s depth", size_px, vk::Format::eD32Sfloat,
+                                      xr::ImageUse::kDepth);
         }
     } catch (const Error&) { dropDepth(); }  // offered, but not available: go on without depth
 }
@@ -42,9 +50,11 @@ void EyeImages::acquire(int eye, bool with_depth) {
     if (shows_depth_[e]) { depth_now_[e] = depth_[e].acquire(); }
 }
 
-void EyeImages::present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by, double near) {
+void EyeImages::present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by,
+                        double near) {
     const auto e = static_cast<std::size_t>(eye);
-    presenter_.record(commands, {&image, part_px_, tinted_by, colour_now_[e], depth_now_[e], see_through_}, near);
+    presenter_.record(commands, {&image, part_px_, tinted_by, colour_now_[e], depth_now_[e], see_through_},
+                      near);
 }
 
 void EyeImages::clear(Commands& commands, int eye, const glm::vec4& colour) {

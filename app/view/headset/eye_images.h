@@ -31,7 +31,8 @@ public:
     void seeThrough(bool see_through) { see_through_ = see_through; }
     // Between begin and submit of `commands`, into the images that acquire() took; may be repeated. `near` in
     // scene units.
-    void present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by, double near);
+    void present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by,
+                 double near);
     void clear(Commands& commands, int eye, const glm::vec4& colour);
     // After submit: releases what acquire() took.
     void release();

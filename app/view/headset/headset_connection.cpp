@@ -21,7 +21,8 @@ constexpr std::chrono::milliseconds kBetweenFailures(1000);
 
 }  // namespace
 
-HeadsetConnection::HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say)
+HeadsetConnection::HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px,
+                                     const Say& say)
     : instance_(instance), context_(context), panel_px_(panel_px) {
     const auto tryTo = [this](const auto& begin) {
         try {
@@ -40,7 +41,8 @@ HeadsetConnection::HeadsetConnection(xr::Instance& instance, const Context& cont
 
 void HeadsetConnection::lose(const std::string& why) {
     if (!losses_.add(std::chrono::steady_clock::now())) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_.count()));
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{}: {} times in a row before a frame was shown", why, losses_.count()));
     }
     why_lost_ = why;
     is_gone_ = false;

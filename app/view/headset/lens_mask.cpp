@@ -16,19 +16,23 @@ namespace {
 bool areNear(float a, float b) { return std::abs(a - b) <= 1e-4f; }
 
 bool areSame(const XrFovf& a, const XrFovf& b) {
-    return areNear(a.angleLeft, b.angleLeft) && areNear(a.angleRight, b.angleRight) && areNear(a.angleUp, b.angleUp) &&
-           areNear(a.angleDown, b.angleDown);
+    return areNear(a.angleLeft, b.angleLeft) && areNear(a.angleRight, b.angleRight) &&
+           areNear(a.angleUp, b.angleUp) && areNear(a.angleDown, b.angleDown);
 }
 
 bool areSame(const xr::HiddenMesh& a, const xr::HiddenMesh& b) {
-    const auto same = [](const XrVector2f& p, const XrVector2f& q) { return areNear(p.x, q.x) && areNear(p.y, q.y); };
+    const auto same = [](const XrVector2f& p, const XrVector2f& q) {
+        return areNear(p.x, q.x) && areNear(p.y, q.y);
+    };
     return a.indices == b.indices && std::ranges::equal(a.vertices, b.vertices, same);
 }
 
 }  // namespace
 
-std::array<std::span<const std::uint8_t>, 2> LensMask::update(const std::array<xr::HiddenMesh, 2>& meshes, int version,
-                                                              const std::array<xr::EyeView, 2>& views, glm::uvec2 size_px) {
+std::array<std::span<const std::uint8_t>, 2> LensMask::update(const std::array<xr::HiddenMesh, 2>& meshes,
+                                                              int version,
+                                                              const std::array<xr::EyeView, 2>& views,
+                                                              glm::uvec2 size_px) {
     for (std::size_t e = 0; e < 2; ++e) {
         Eye& eye = eyes_[e];
         const XrFovf& fov = views[e].fov;

@@ -15,8 +15,9 @@ public:
     // The hidden tiles by eye, as FrameSettings takes them, valid until the next call; empty if nothing is
     // hidden. Recomputed only if a mesh, the angles or the size have changed. Meshes with the `version` of
     // the last call are those of the last call.
-    std::array<std::span<const std::uint8_t>, 2> update(const std::array<xr::HiddenMesh, 2>& meshes, int version,
-                                                        const std::array<xr::EyeView, 2>& views, glm::uvec2 size_px);
+    std::array<std::span<const std::uint8_t>, 2> update(const std::array<xr::HiddenMesh, 2>& meshes,
+                                                        int version, const std::array<xr::EyeView, 2>& views,
+                                                        glm::uvec2 size_px);
 
 private:
     struct Eye {

@@ -41,31 +41,39 @@ void makeBuffersAhead(vk::CommandBuffer commands) {
     for (int frame = 0; frame < 2; ++frame) { ImGui_ImplVulkan_RenderDrawData(&data, commands); }
 }
 
-void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the panel cannot be drawn: {}", vk::to_string(vk::Result(result))); }
+void requireSuccess(VkResult result) {
+    check(result == VK_SUCCESS, "the panel cannot be drawn: {}", vk::to_string(vk::Result(result)));
+}
 
 }  // namespace
 
-OwnImage::OwnImage(const Context& context, const char* name, glm::uvec2 size_px, vk::Format format, vk::ImageUsageFlags usage)
-    : image(context.device(), vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px.x, size_px.y, 1}, 1, 1,
-                                                  vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal, usage)) {
+OwnImage::OwnImage(const Context& context, const char* name, glm::uvec2 size_px, vk::Format format,
+                   vk::ImageUsageFlags usage)
+    : image(context.device(),
+            vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px.x, size_px.y, 1}, 1, 1,
+                                vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal, usage)) {
     const auto needs = image.getMemoryRequirements();
-    const std::uint32_t type = context.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal);
+    const std::uint32_t type =
+        context.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal);
     memory = vk::raii::DeviceMemory(context.device(), vk::MemoryAllocateInfo(needs.size, type));
     image.bindMemory(*memory, 0);
     context.name(image, name);
 }
 
-Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : context_(context), size_px_(size_px) {
+Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format)
+    : context_(context), size_px_(size_px) {
     const auto families = context.physicalDevice().getQueueFamilyProperties();
     if (!(families[context.queueFamily()].queueFlags & vk::QueueFlagBits::eGraphics)) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: the panel needs a queue that draws", context.deviceName()));
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{}: the panel needs a queue that draws", context.deviceName()));
     }
     const TexelLayout layout = texelLayoutOf(format);
     const vk::Format raw = layout.blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
     makeImage(raw);
     if (layout.linear) {
         const vk::Format encoded = layout.blue_first ? vk::Format::eB8G8R8A8Srgb : vk::Format::eR8G8B8A8Srgb;
-        encoded_.emplace(context, "canvas", size_px, encoded, vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
+        encoded_.emplace(context, "canvas", size_px, encoded,
+                         vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
     }
     makeRenderPass(raw);
     startImGui();
@@ -78,26 +86,31 @@ Canvas::~Canvas() {
 }
 
 void Canvas::makeImage(vk::Format format) {
-    picture_.emplace(context_, "canvas", size_px_, format, vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc);
-    view_ = vk::raii::ImageView(context_.device(), vk::ImageViewCreateInfo({}, image(), vk::ImageViewType::e2D, format, {},
-                                                                           {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
+    picture_.emplace(context_, "canvas", size_px_, format,
+                     vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc);
+    view_ = vk::raii::ImageView(context_.device(),
+                                vk::ImageViewCreateInfo({}, image(), vk::ImageViewType::e2D, format, {},
+                                                        {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
 }
 
 void Canvas::makeRenderPass(vk::Format format) {
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
-    const vk::AttachmentDescription attachment({}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eClear,
-                                               vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
-                                               vk::AttachmentStoreOp::eDontCare, vk::ImageLayout::eUndefined,
-                                               vk::ImageLayout::eTransferSrcOptimal);
+    const vk::AttachmentDescription attachment(
+        {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eClear, vk::AttachmentStoreOp::eStore,
+        vk::AttachmentLoadOp::eDontCare, vk::AttachmentStoreOp::eDontCare, vk::ImageLayout::eUndefined,
+        vk::ImageLayout::eTransferSrcOptimal);
     const vk::AttachmentReference reference(0, vk::ImageLayout::eColorAttachmentOptimal);
     const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, {}, reference);
     const vk::SubpassDependency dependencies[] = {
-        {VK_SUBPASS_EXTERNAL, 0, Stage::eTransfer, Stage::eColorAttachmentOutput, Access::eTransferRead, Access::eColorAttachmentWrite},
-        {0, VK_SUBPASS_EXTERNAL, Stage::eColorAttachmentOutput, Stage::eTransfer, Access::eColorAttachmentWrite, Access::eTransferRead}};
-    render_pass_ = vk::raii::RenderPass(context_.device(), vk::RenderPassCreateInfo({}, attachment, subpass, dependencies));
-    framebuffer_ =
-        vk::raii::Framebuffer(context_.device(), vk::FramebufferCreateInfo({}, *render_pass_, *view_, size_px_.x, size_px_.y, 1));
+        {VK_SUBPASS_EXTERNAL, 0, Stage::eTransfer, Stage::eColorAttachmentOutput, Access::eTransferRead,
+         Access::eColorAttachmentWrite},
+        {0, VK_SUBPASS_EXTERNAL, Stage::eColorAttachmentOutput, Stage::eTransfer,
+         Access::eColorAttachmentWrite, Access::eTransferRead}};
+    render_pass_ = vk::raii::RenderPass(context_.device(),
+                                        vk::RenderPassCreateInfo({}, attachment, subpass, dependencies));
+    framebuffer_ = vk::raii::Framebuffer(
+        context_.device(), vk::FramebufferCreateInfo({}, *render_pass_, *view_, size_px_.x, size_px_.y, 1));
 }
 
 void Canvas::startImGui() {
@@ -126,7 +139,8 @@ void Canvas::startBackend() {
         const Context& my = *static_cast<const Context*>(context);
         return my.instance().getDispatcher()->vkGetInstanceProcAddr(*my.instance(), name);
     };
-    check(ImGui_ImplVulkan_LoadFunctions(find, const_cast<Context*>(&context_)), "the panel cannot be drawn: Vulkan lacks a function");
+    check(ImGui_ImplVulkan_LoadFunctions(find, const_cast<Context*>(&context_)),
+          "the panel cannot be drawn: Vulkan lacks a function");
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = *context_.instance();
     info.PhysicalDevice = *context_.physicalDevice();
@@ -135,8 +149,9 @@ void Canvas::startBackend() {
     info.Queue = *context_.queue();
     info.PipelineCache = *context_.pipelineCache();
     const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 1);
-    descriptors_ = vk::raii::DescriptorPool(context_.device(),
-                                            vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size));
+    descriptors_ = vk::raii::DescriptorPool(
+        context_.device(),
+        vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size));
     info.DescriptorPool = *descriptors_;
     info.MinImageCount = info.ImageCount = 2;
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
@@ -154,7 +169,8 @@ void Canvas::upload(vk::CommandBuffer commands) {
 }
 
 void Canvas::setBackendAside() {
-    old_.emplace_back(std::exchange(ImGui::GetIO().BackendRendererUserData, nullptr), std::move(descriptors_));
+    old_.emplace_back(std::exchange(ImGui::GetIO().BackendRendererUserData, nullptr),
+                      std::move(descriptors_));
 }
 
 void Canvas::dropOld() {
@@ -178,7 +194,8 @@ void Canvas::takeLetters() {
 void Canvas::begin(const PanelPointer& pointer, double step_seconds) {
     ImGuiIO& io = ImGui::GetIO();
     constexpr float kNowhere = -std::numeric_limits<float>::max();
-    io.MousePos = pointer.place_px ? ImVec2(static_cast<float>(pointer.place_px->x), static_cast<float>(pointer.place_px->y))
+    io.MousePos = pointer.place_px ? ImVec2(static_cast<float>(pointer.place_px->x),
+                                            static_cast<float>(pointer.place_px->y))
                                    : ImVec2(kNowhere, kNowhere);
     io.MouseDown[0] = pointer.pressed;
     io.MouseWheel = static_cast<float>(pointer.wheel);
@@ -251,7 +268,8 @@ void Canvas::record(Commands& commands) {
     is_recorded_ = true;
     const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
     const vk::raii::CommandBuffer& buffer = commands.buffer();
-    buffer.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffer_, vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), black),
+    buffer.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffer_,
+                                                   vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), black),
                            vk::SubpassContents::eInline);
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *buffer);
     buffer.endRenderPass();

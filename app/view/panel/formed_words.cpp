@@ -25,23 +25,31 @@ public:
     FormingFont(FT_Library library, const LoadedFont& loaded) {
         FT_Face face = nullptr;
         const auto* const bytes = reinterpret_cast<const FT_Byte*>(loaded.bytes.data());
-        if (FT_New_Memory_Face(library, bytes, static_cast<FT_Long>(loaded.bytes.size()), loaded.font.number, &face) != 0) { return; }
+        if (FT_New_Memory_Face(library, bytes, static_cast<FT_Long>(loaded.bytes.size()), loaded.font.number,
+                               &face) != 0) {
+            return;
+        }
         face_.reset(face);
         const UniqueOf<hb_blob_t, hb_blob_destroy> blob(
-            hb_blob_create(loaded.bytes.data(), static_cast<unsigned>(loaded.bytes.size()), HB_MEMORY_MODE_READONLY, nullptr, nullptr));
-        const UniqueOf<hb_face_t, hb_face_destroy> tables(hb_face_create(blob.get(), static_cast<unsigned>(loaded.font.number)));
+            hb_blob_create(loaded.bytes.data(), static_cast<unsigned>(loaded.bytes.size()),
+                           HB_MEMORY_MODE_READONLY, nullptr, nullptr));
+        const UniqueOf<hb_face_t, hb_face_destroy> tables(
+            hb_face_create(blob.get(), static_cast<unsigned>(loaded.font.number)));
         font_.reset(hb_font_create(tables.get()));
     }
 
     // In units, for lines as high as from the font's ascent to its descent, as in ImGui; 0: not a font.
     [[nodiscard]] int em(float line_px) const {
         const int line_units = face_ ? face_->ascender - face_->descender : 0;
-        return line_units <= 0 ? 0
-                               : static_cast<int>(std::lround(kUnits * line_px * static_cast<float>(face_->units_per_EM) /
-                                                              static_cast<float>(line_units)));
+        return line_units <= 0
+                   ? 0
+                   : static_cast<int>(std::lround(kUnits * line_px * static_cast<float>(face_->units_per_EM) /
+                                                  static_cast<float>(line_units)));
     }
     void setEm(int em) {
-        if (!font_ || FT_Set_Char_Size(face_.get(), 0, em, 2 * kDotsPerInch, kDotsPerInch) != 0) { font_.reset(); }
+        if (!font_ || FT_Set_Char_Size(face_.get(), 0, em, 2 * kDotsPerInch, kDotsPerInch) != 0) {
+            font_.reset();
+        }
         if (font_) { hb_font_set_scale(font_.get(), em, em); }
     }
 
@@ -49,7 +57,8 @@ public:
     [[nodiscard]] std::vector<PlacedGlyph> form(const std::u32string& word) const {
         if (!font_) { return {}; }
         const UniqueOf<hb_buffer_t, hb_buffer_destroy> buffer(hb_buffer_create());
-        hb_buffer_add_utf32(buffer.get(), reinterpret_cast<const std::uint32_t*>(word.data()), static_cast<int>(word.size()), 0, -1);
+        hb_buffer_add_utf32(buffer.get(), reinterpret_cast<const std::uint32_t*>(word.data()),
+                            static_cast<int>(word.size()), 0, -1);
         hb_buffer_guess_segment_properties(buffer.get());
         hb_shape(font_.get(), buffer.get(), nullptr, 0);
         unsigned count = 0;
@@ -58,7 +67,8 @@ public:
         std::vector<PlacedGlyph> signs;
         for (unsigned i = 0; i < count; ++i) {
             if (infos[i].codepoint == 0) { return {}; }
-            signs.push_back({infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance});
+            signs.push_back(
+                {infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance});
         }
         return signs;
     }
@@ -66,14 +76,16 @@ public:
     [[nodiscard]] FormedGlyph draw(const PlacedGlyph& sign) const {
         const auto [glyph, x, y, advance] = sign;
         FormedGlyph drawn{{0, 0}, {}, {0.0f, 0.0f}, static_cast<float>(advance) / kUnits};
-        if (FT_Load_Glyph(face_.get(), static_cast<FT_UInt>(glyph), FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0 ||
+        if (FT_Load_Glyph(face_.get(), static_cast<FT_UInt>(glyph), FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) !=
+                0 ||
             FT_Render_Glyph(face_->glyph, FT_RENDER_MODE_NORMAL) != 0) {
             return drawn;
         }
         const FT_Bitmap& bitmap = face_->glyph->bitmap;
         drawn.size_px = {bitmap.width, bitmap.rows};
         for (unsigned row = 0; row < bitmap.rows; ++row) {
-            const unsigned char* const first = bitmap.buffer + static_cast<std::ptrdiff_t>(row) * bitmap.pitch;
+            const unsigned char* const first =
+                bitmap.buffer + static_cast<std::ptrdiff_t>(row) * bitmap.pitch;
             drawn.coverage.insert(drawn.coverage.end(), first, first + bitmap.width);
         }
         drawn.low_px = {static_cast<float>(x) / kUnits + 0.5f * static_cast<float>(face_->glyph->bitmap_left),
@@ -88,7 +100,8 @@ private:
 
 }  // namespace
 
-FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_glyphs) {
+FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px,
+                      std::size_t most_glyphs) {
     FormedWords formed;
     FT_Library begun = nullptr;
     if (words.empty() || FT_Init_FreeType(&begun) != 0) { return formed; }

@@ -35,6 +35,7 @@ struct FormedWords {
 
 // Forms each word with the first font that has all of it; words that no font has are left out. At most
 // `most_glyphs` different glyphs. The first font's lines are `line_px` high.
-FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_glyphs);
+FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px,
+                      std::size_t most_glyphs);
 
 }  // namespace binosplat

@@ -46,12 +46,15 @@ std::array<Part, 6> partsOf(const xr::ProfileBindings& held, int hand, bool comp
 // Its outline about a point, its parts, and lines to their words on its outer side.
 void drawHeld(const xr::ProfileBindings& held, int hand, bool compares, const ImVec2& corner, float width) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImU32 outline = ImGui::GetColorU32(ImGuiCol_TextDisabled), words = ImGui::GetColorU32(ImGuiCol_Text);
+    const ImU32 outline = ImGui::GetColorU32(ImGuiCol_TextDisabled),
+                words = ImGui::GetColorU32(ImGuiCol_Text);
     const ImU32 accent = IM_COL32(255, 220, 80, 255);
     const float side = hand == kLeft ? -1.0f : 1.0f, radius = 0.075f * width;
     const ImVec2 middle(corner.x + (0.5f + 0.09f * side) * width, corner.y + 0.36f * kDrawnHighPx);
     // A left one's places, mirrored for a right one.
-    const auto there = [&](float x, float y) { return ImVec2(middle.x - side * x * radius, middle.y + y * radius); };
+    const auto there = [&](float x, float y) {
+        return ImVec2(middle.x - side * x * radius, middle.y + y * radius);
+    };
     list.AddCircle(middle, radius, outline, 48, 2.5f);
     const std::array handle{there(-0.4f, 0.92f), there(-0.3f, 2.4f), there(0.3f, 2.4f), there(0.4f, 0.92f)};
     list.AddPolyline(handle.data(), static_cast<int>(handle.size()), outline, 0, 2.5f);
@@ -61,12 +64,15 @@ void drawHeld(const xr::ProfileBindings& held, int hand, bool compares, const Im
         const bool is_press = input == held.stick_press;
         const std::string first = is_press ? "pressed in" : xr::inputName(input);
         const ImVec2 first_px = ImGui::CalcTextSize(first.c_str()), deed_px = ImGui::CalcTextSize(deed);
-        const auto from = [&](float text_px) { return hand == kLeft ? corner.x : corner.x + width - text_px; };
+        const auto from = [&](float text_px) {
+            return hand == kLeft ? corner.x : corner.x + width - text_px;
+        };
         list.AddText(ImVec2(from(first_px.x), y), accent, first.c_str());
         list.AddText(ImVec2(from(deed_px.x), y + first_px.y), words, deed);
         const ImVec2 at = there(place.x, place.y);
         const float longest = std::max(first_px.x, deed_px.x) + 6.0f;
-        list.AddLine(ImVec2(hand == kLeft ? corner.x + longest : corner.x + width - longest, y + first_px.y), at, outline, 1.5f);
+        list.AddLine(ImVec2(hand == kLeft ? corner.x + longest : corner.x + width - longest, y + first_px.y),
+                     at, outline, 1.5f);
         list.AddCircleFilled(at, (place.x == -0.3f ? 0.24f : 0.15f) * radius, accent);
         y += kLabelStepPx + 8.0f;
     }
@@ -90,7 +96,9 @@ void drawHelpPage(PanelWidgets& widgets, const PanelStatus& status, PanelRequest
         writeLine(what);
     }
     static constexpr std::array kWays{"Recentre", "Leave"};
-    if (const auto pressed = widgets.row(kWays, {}, kLargeTargetPx)) { (*pressed == 0 ? requests.recentre : requests.quit) = true; }
+    if (const auto pressed = widgets.row(kWays, {}, kLargeTargetPx)) {
+        (*pressed == 0 ? requests.recentre : requests.quit) = true;
+    }
     drawSaid(status);
 }
 

@@ -14,13 +14,15 @@ std::string openRuler(Ruler& ruler) {
     return "click on one end of something whose length you know";
 }
 
-std::string measureAt(const std::optional<glm::dvec3>& place, Ruler& ruler, double units_per_metre, TextEntry& entry) {
+std::string measureAt(const std::optional<glm::dvec3>& place, Ruler& ruler, double units_per_metre,
+                      TextEntry& entry) {
     if (!place) { return "nothing is seen there: click on something else"; }
     const std::optional<double> units = ruler.add(*place);
     if (!units) { return "and now on its other end"; }
     if (!(*units > 0.0)) { return "both ends are the same place"; }
     const std::string now = fmt::format("{:.4g} m", *units / units_per_metre);
-    entry.open(TextEntry::What::kMetres, fmt::format("As shown, it is {} long. How many metres is it in truth?", now), "");
+    entry.open(TextEntry::What::kMetres,
+               fmt::format("As shown, it is {} long. How many metres is it in truth?", now), "");
     return "as shown, it is " + now + " long";
 }
 

@@ -12,7 +12,8 @@ namespace binosplat {
 std::string openRuler(Ruler& ruler);
 // Somebody has clicked on that place of the scene, or where nothing is; the panel then asks for the distance
 // of two.
-std::string measureAt(const std::optional<glm::dvec3>& place, Ruler& ruler, double units_per_metre, TextEntry& entry);
+std::string measureAt(const std::optional<glm::dvec3>& place, Ruler& ruler, double units_per_metre,
+                      TextEntry& entry);
 
 // The true metres in a unit, if they were written just now: the scene's from now on.
 std::optional<double> takeMeasure(const PanelRequests& requests, const Ruler& ruler, LoadedScene& scene);

@@ -48,9 +48,15 @@ private:
         for (int y = first.y; y < last.y; ++y) {
             for (int x = first.x; x < last.x; ++x) {
                 const glm::vec2 share = (glm::vec2(glm::ivec2(x, y)) + 0.5f - low) / (high - low);
-                if (glm::any(glm::lessThan(share, glm::vec2(0.0f))) || glm::any(glm::greaterThan(share, glm::vec2(1.0f)))) { continue; }
-                const glm::vec2 place = glm::mix(glm::vec2(glyph.U0, glyph.V0), glm::vec2(glyph.U1, glyph.V1), share) * glm::vec2(size_px_);
-                float& pixel = coverage[static_cast<std::size_t>(y) * kMessagePx.x + static_cast<std::size_t>(x)];
+                if (glm::any(glm::lessThan(share, glm::vec2(0.0f))) ||
+                    glm::any(glm::greaterThan(share, glm::vec2(1.0f)))) {
+                    continue;
+                }
+                const glm::vec2 place =
+                    glm::mix(glm::vec2(glyph.U0, glyph.V0), glm::vec2(glyph.U1, glyph.V1), share) *
+                    glm::vec2(size_px_);
+                float& pixel =
+                    coverage[static_cast<std::size_t>(y) * kMessagePx.x + static_cast<std::size_t>(x)];
                 pixel = std::max(pixel, sample(place - 0.5f));
             }
         }
@@ -61,7 +67,8 @@ private:
         const auto at = [&](int dx, int dy) {
             const glm::ivec2 p = glm::clamp(low + glm::ivec2(dx, dy), glm::ivec2(0), size_px_ - 1);
             return static_cast<float>(
-                       pixels_[4 * (static_cast<std::size_t>(p.y) * static_cast<std::size_t>(size_px_.x) + static_cast<std::size_t>(p.x)) +
+                       pixels_[4 * (static_cast<std::size_t>(p.y) * static_cast<std::size_t>(size_px_.x) +
+                                    static_cast<std::size_t>(p.x)) +
                                3]) /
                    255.0f;
         };
@@ -102,7 +109,8 @@ TexelPicture drawMessage(std::string_view message, const TexelLayout& layout, co
     };
     float widest = 0.0f;
     for (const std::string& line : lines) { widest = std::max(widest, longOf(line)); }
-    const float begin = std::round(0.5f * (width - widest - beside_px)), high = kLineStepPx * static_cast<float>(lines.size());
+    const float begin = std::round(0.5f * (width - widest - beside_px)),
+                high = kLineStepPx * static_cast<float>(lines.size());
     std::vector<float> coverage(std::size_t{kMessagePx.x} * kMessagePx.y, 0.0f);
     const Letters letters;
     float y = 0.5f * (height - high) + 0.5f * (kLineStepPx - font.FontSize);
@@ -113,17 +121,22 @@ TexelPicture drawMessage(std::string_view message, const TexelLayout& layout, co
     }
     const float plate_width = std::min(widest + beside_px + 2.0f * kMarginPx, width);
     const float plate_height = std::min(drawing ? height : high + kMarginPx, height);
-    const glm::dvec2 half = 0.5 * glm::dvec2(static_cast<double>(plate_width), static_cast<double>(plate_height));
+    const glm::dvec2 half =
+        0.5 * glm::dvec2(static_cast<double>(plate_width), static_cast<double>(plate_height));
     TexelPicture picture{kMessagePx, std::vector<std::uint32_t>(coverage.size())};
     for (std::size_t i = 0; i < coverage.size(); ++i) {
-        const glm::dvec2 place(static_cast<double>(i % kMessagePx.x) + 0.5, static_cast<double>(i / kMessagePx.x) + 0.5);
+        const glm::dvec2 place(static_cast<double>(i % kMessagePx.x) + 0.5,
+                               static_cast<double>(i / kMessagePx.x) + 0.5);
         const double plate = kPlateAlpha * plateAt(place - 0.5 * glm::dvec2(kMessagePx), half);
-        const glm::dvec2 middle(static_cast<double>(begin + 0.5f * kDrawingPx), 0.5 * static_cast<double>(height));
+        const glm::dvec2 middle(static_cast<double>(begin + 0.5f * kDrawingPx),
+                                0.5 * static_cast<double>(height));
         const glm::dvec2 in_square = (place - middle) / (0.5 * static_cast<double>(kDrawingPx));
         const bool is_drawn = drawing && std::max(std::abs(in_square.x), std::abs(in_square.y)) <= 1.0;
-        const DrawnPoint ink = is_drawn ? drawing(in_square) : DrawnPoint{glm::dvec3(1.0), static_cast<double>(coverage[i])};
+        const DrawnPoint ink =
+            is_drawn ? drawing(in_square) : DrawnPoint{glm::dvec3(1.0), static_cast<double>(coverage[i])};
         const double alpha = ink.alpha + (1.0 - ink.alpha) * plate;
-        picture.texels[i] = texelOf(alpha > 0.0 ? ink.alpha / alpha * ink.light : glm::dvec3(0.0), alpha, layout);
+        picture.texels[i] =
+            texelOf(alpha > 0.0 ? ink.alpha / alpha * ink.light : glm::dvec3(0.0), alpha, layout);
     }
     return picture;
 }

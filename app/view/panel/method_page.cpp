@@ -22,13 +22,14 @@ constexpr float kSliderShare = 0.62f;  // of the width, for sliders beside their
 
 // One of the names that the table has for an option, in this order.
 template <typename Owner>
-void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, std::span<const std::string_view> names, Owner& owner,
-            std::size_t per_row) {
+void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row,
+            std::span<const std::string_view> names, Owner& owner, std::size_t per_row) {
     const auto pressed = widgets.chooseFrom(label, names, textOf(row.field.value(owner)), per_row);
     if (pressed) { row.field.read({label, {std::string(*pressed)}}, owner); }
 }
 template <typename Owner>
-void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, Owner& owner, std::size_t per_row) {
+void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, Owner& owner,
+            std::size_t per_row) {
     choose(widgets, label, row, row.field.choices, owner, per_row);
 }
 
@@ -60,11 +61,15 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, bool in_headset) 
     widgets.checkbox("Centre ROI (paper)", &stereo.warp.center_rois);
     ImGui::SameLine(0.4f * width);
     bool by_distance = stereo.order.value_or(kWearersOrder) == Order::kDistance;
-    if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? Order::kDistance : Order::kDepth; }
+    if (widgets.checkbox("Sort by distance", &by_distance)) {
+        stereo.order = by_distance ? Order::kDistance : Order::kDepth;
+    }
     ImGui::SameLine(0.75f * width);
     bool foveated = stereo.foveation_deg > 0.0;
     if (foveated) { settings.last_foveation_deg = stereo.foveation_deg; }
-    if (widgets.checkbox("Foveation", &foveated)) { stereo.foveation_deg = foveated ? settings.last_foveation_deg : 0.0; }
+    if (widgets.checkbox("Foveation", &foveated)) {
+        stereo.foveation_deg = foveated ? settings.last_foveation_deg : 0.0;
+    }
     const SliderRange margins = sliderOf(*findRunRow("margin"));
     const int least_px = static_cast<int>(margins.least), most_px = static_cast<int>(margins.most);
     int margin = static_cast<int>(stereo.warp.margin_px);
@@ -74,7 +79,8 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, bool in_headset) 
     widgets.noteSlider("margin (paper)");
     const SliderRange budgets = sliderOf(*findRunRow("budget"));
     auto budget = static_cast<float>(100.0 * stereo.warp.budget);
-    if (ImGui::SliderFloat("budget", &budget, static_cast<float>(100.0 * budgets.least), static_cast<float>(100.0 * budgets.most),
+    if (ImGui::SliderFloat("budget", &budget, static_cast<float>(100.0 * budgets.least),
+                           static_cast<float>(100.0 * budgets.most),
                            stereo.mode == Mode::kTemporal ? "%.0f %% of both eyes" : "%.0f %% of an eye")) {
         stereo.warp.budget = std::clamp(static_cast<double>(budget) / 100.0, budgets.least, budgets.most);
     }
@@ -88,7 +94,8 @@ void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
     ImGuiStorage* storage = ImGui::GetStateStorage();
     const ImGuiID id = ImGui::GetID("resolution being chosen");
     auto scale = storage->GetFloat(id, static_cast<float>(settings.resolution_scale));
-    ImGui::SliderFloat("resolution", &scale, static_cast<float>(scales.least), static_cast<float>(scales.most), "%.2f");
+    ImGui::SliderFloat("resolution", &scale, static_cast<float>(scales.least),
+                       static_cast<float>(scales.most), "%.2f");
     widgets.noteSlider("resolution");
     if (ImGui::IsItemActive()) {
         storage->SetFloat(id, scale);
@@ -104,27 +111,34 @@ void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
 void drawTimes(const PanelStatus& status) {
     const std::vector<float>& times = status.frame_ms;
     const float last = times.empty() ? 0.0f : times.back();
-    const std::string label = last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
+    const std::string label =
+        last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
     // A slow first frame, which compiles kernels, must not flatten the others.
     std::vector<float> sorted = times;
     std::ranges::sort(sorted);
     const float highest = sorted.empty() ? 0.0f : 2.0f * sorted[sorted.size() / 2];
-    ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f, std::max(highest, 33.3f),
-                     ImVec2(0.0f, 60.0f));
+    ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f,
+                     std::max(highest, 33.3f), ImVec2(0.0f, 60.0f));
     if (status.frame == nullptr) { return; }
     const FrameCounters& counters = status.frame->counters;
     std::uint64_t splats = 0;
-    for (const TargetCounters& target : counters.targets) { splats = std::max(splats, target.splats_visible); }
+    for (const TargetCounters& target : counters.targets) {
+        splats = std::max(splats, target.splats_visible);
+    }
     const WarpedCounters warped = counters.warped.value_or(WarpedCounters{});
     const WarpedCounters::Classes pixels = warped.pixels.value_or(WarpedCounters::Classes{});
-    const auto percent = [](std::uint64_t part, double whole) { return 100.0 * static_cast<double>(part) / std::max(whole, 1.0); };
-    writeLine(fmt::format("GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
-                          percent(warped.tiles_patched, static_cast<double>(warped.tiles_shown)),
-                          percent(pixels.hole, static_cast<double>(pixels.covered + pixels.gap + pixels.hole)),
-                          static_cast<double>(splats) / 1000.0));
+    const auto percent = [](std::uint64_t part, double whole) {
+        return 100.0 * static_cast<double>(part) / std::max(whole, 1.0);
+    };
+    writeLine(fmt::format(
+        "GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
+        percent(warped.tiles_patched, static_cast<double>(warped.tiles_shown)),
+        percent(pixels.hole, static_cast<double>(pixels.covered + pixels.gap + pixels.hole)),
+        static_cast<double>(splats) / 1000.0));
 }
 
-void drawFiles(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
+void drawFiles(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+               PanelRequests& requests) {
     widgets.checkbox("Show how tiles were made", &settings.tint);
     ImGui::SameLine(0.5f * ImGui::GetContentRegionAvail().x);
     requests.save = widgets.button("Save");
@@ -150,11 +164,13 @@ void drawFacts(const PanelStatus& status) {
 void drawStages(const FrameResult& frame) {
     const std::vector<TargetCounters>& targets = frame.counters.targets;
     if (targets.size() == 2 && targets[kLeft].tiles_hidden + targets[kRight].tiles_hidden > 0) {
-        writeLine(fmt::format("hidden: {} and {} of {} tiles", targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden,
+        writeLine(fmt::format("hidden: {} and {} of {} tiles", targets[kLeft].tiles_hidden,
+                              targets[kRight].tiles_hidden,
                               std::max(targets[kLeft].tiles, targets[kRight].tiles)));
     }
     if (const auto& ahead = frame.counters.ahead; ahead && ahead->frames_cut_short > 0) {
-        writeLine(fmt::format("{} frames lacked capacity, {} were rendered again", ahead->frames_cut_short, ahead->frames_done_again));
+        writeLine(fmt::format("{} frames lacked capacity, {} were rendered again", ahead->frames_cut_short,
+                              ahead->frames_done_again));
     }
     ImGui::Columns(2, "stages", false);
     for (const auto& [label, ms] : addUp(frame.gpu_ms)) {
@@ -166,7 +182,8 @@ void drawStages(const FrameResult& frame) {
 
 }  // namespace
 
-void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
+void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+                    PanelRequests& requests) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
     drawMethod(widgets, settings, !status.window);
     drawResolution(widgets, settings);

@@ -5,6 +5,8 @@ namespace binosplat {
 
 std::vector<SystemFont> fontsWith(const std::set<std::uint32_t>&) { return {}; }
 
-FormedWords formWords(const std::set<std::u32string>&, std::span<const LoadedFont>, float, std::size_t) { return {}; }
+FormedWords formWords(const std::set<std::u32string>&, std::span<const LoadedFont>, float, std::size_t) {
+    return {};
+}
 
 }  // namespace binosplat

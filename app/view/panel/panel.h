@@ -18,8 +18,8 @@ public:
     // Lays out the widgets, for the hand that points or for `mouse`; `uses_mouse`: it did something there. If
     // they have changed, acquires an image of `hung`, the headset in whose room the panel hangs; null: it
     // does not hang.
-    PanelRequests layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, const ViewSettings& settings,
-                         double step_seconds);
+    PanelRequests layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse,
+                         const ViewSettings& settings, double step_seconds);
     // Draws the widgets on that image. The canvas is also drawn if it is to be `copied` to a window.
     void record(Commands& commands, ConnectedHeadset* headset, bool copied);
     // After submission: the runtime may show that image.

@@ -20,7 +20,8 @@ namespace {
 constexpr float kTabsShare = 0.64f, kMoreTabsShare = 0.78f;
 
 // Chooses the page; the list of scenes is refreshed when its page is opened.
-void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
+void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser,
+              const PanelStatus& status) {
     static constexpr std::array kNames{"View", "Scenes", "Method", "Time", "Help"};  // by PanelPage
     std::vector<PanelPage> pages{PanelPage::kView, PanelPage::kScenes, PanelPage::kMethod};
     if (status.time) { pages.push_back(PanelPage::kTime); }
@@ -31,15 +32,19 @@ void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& choos
     const auto chosen = static_cast<std::size_t>(std::ranges::find(pages, settings.page) - pages.begin());
     const auto pressed = widgets.row(tabs, chosen, kTabPx, tabs.size() > 3 ? kMoreTabsShare : kTabsShare);
     if (pressed) { settings.page = pages[*pressed]; }
-    if (settings.page == PanelPage::kScenes && (pressed || chooser.isNew())) { chooser.refresh(status.scene); }
+    if (settings.page == PanelPage::kScenes && (pressed || chooser.isNew())) {
+        chooser.refresh(status.scene);
+    }
     ImGui::SameLine();
 }
 
 }  // namespace
 
 void drawSaid(const PanelStatus& status) {
-    static constexpr const char* kHands = "Trigger: click. Grip: move the scene. Both grips: turn it and make it larger or smaller.";
-    static constexpr const char* kMouse = "Left button: orbit. Right button: move. Wheel: nearer and farther. H: all keys.";
+    static constexpr const char* kHands =
+        "Trigger: click. Grip: move the scene. Both grips: turn it and make it larger or smaller.";
+    static constexpr const char* kMouse =
+        "Left button: orbit. Right button: move. Wheel: nearer and farther. H: all keys.";
     writeWrapped(!status.message.empty() ? status.message : status.window ? kMouse : kHands);
     if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     if (!status.files.empty()) { writeLine(endOf(asShown(status.files))); }
@@ -81,21 +86,26 @@ void followViewpoints(const PanelRequests& requests, TextEntry& entry, Viewpoint
     if (requests.rename_viewpoint && viewpoints.requireOwn()) {
         entry.open(TextEntry::What::kViewpointName, "The viewpoint's name", viewpoints.current()->name);
     }
-    if (requests.entered && requests.entered->first == TextEntry::What::kViewpointName) { viewpoints.rename(requests.entered->second); }
+    if (requests.entered && requests.entered->first == TextEntry::What::kViewpointName) {
+        viewpoints.rename(requests.entered->second);
+    }
 }
 
-PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status) {
+PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser,
+                        const PanelStatus& status) {
     PanelRequests requests;
     ViewSettings& settings = requests.settings = current;
     PanelWidgets widgets;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
-    ImGui::Begin("binosplat", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    ImGui::Begin("binosplat", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     if (status.has_scene) { drawTabs(widgets, settings, chooser, status); }
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() * 0.84f);
     static constexpr std::array kQuit{"Quit"};
     requests.quit = widgets.row(kQuit, {}, kTabPx).has_value();
-    writeLine(endOf(asShown(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
+    writeLine(endOf(
+        asShown(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
     if (status.entry != nullptr && status.entry->isOpen()) {
         drawTextEntry(widgets, *status.entry, requests);
     } else if (!status.has_scene) {
@@ -115,7 +125,8 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
     }
     // The end of the ray.
     if (ImGui::IsMousePosValid() && !status.window) {
-        ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f, IM_COL32(255, 220, 80, 255));
+        ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f,
+                                                        IM_COL32(255, 220, 80, 255));
     }
     ImGui::End();
     requests.places = widgets.places();

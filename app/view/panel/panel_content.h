@@ -97,10 +97,12 @@ struct PanelStatus {
 
 // What the wearer asked for.
 struct PanelRequests {
-    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
-         take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false, show_whole = false,
-         open_file = false, fill_screen = false, help = false, tour = false, rename_viewpoint = false, forget_viewpoint = false,
-         share_viewpoints = false, read_viewpoints = false, measure = false, compare = false, show_other = false;
+    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false,
+         recentre = false, level_scene = false, take_picture = false, natural_size = false,
+         keep_viewpoint = false, last_scene = false, play = false, show_whole = false, open_file = false,
+         fill_screen = false, help = false, tour = false, rename_viewpoint = false, forget_viewpoint = false,
+         share_viewpoints = false, read_viewpoints = false, measure = false, compare = false,
+         show_other = false;
     double growth = 1.0;               // of the scene, around the wearer's feet
     double rise_m = 0.0;               // of the wearer
     int scene_step = 0;                // to the previous or next scene
@@ -127,6 +129,7 @@ void followViewpoints(const PanelRequests& requests, TextEntry& entry, Viewpoint
 
 // Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as
 // the wearer does.
-PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status);
+PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser,
+                        const PanelStatus& status);
 
 }  // namespace binosplat

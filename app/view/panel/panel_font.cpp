@@ -24,8 +24,9 @@ namespace fs = std::filesystem;
 constexpr ImWchar kBox = 0x25a1;
 // Latin with all its marks (also combining ones, which some systems use in names), Greek, Cyrillic,
 // punctuation, currencies, the box, stars.
-constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff, 0x2010, 0x205e, 0x20a0,
-                                          0x20bf, 0x2190, 0x2193, kBox,   kBox,   0x2605, 0x2606, 0};
+constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff,
+                                          0x2010, 0x205e, 0x20a0, 0x20bf, 0x2190, 0x2193,
+                                          kBox,   kBox,   0x2605, 0x2606, 0};
 // Fonts with all of Unicode take 20 MB.
 constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
 // With these limits the atlas stays below 4096x2048, which every device can sample.
@@ -49,7 +50,9 @@ std::uint64_t numberAt(std::span<const unsigned char> bytes, std::size_t at, std
 std::string readFont(const fs::path& file, std::string& complaint) {
     try {
         std::string bytes = readTextFile(file, "a TrueType font", kMostFontBytes);
-        if (looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()})) { return bytes; }
+        if (looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()})) {
+            return bytes;
+        }
         complaint = fmt::format("{}: is no whole TrueType font", file.string());
     } catch (const Error& error) { complaint = error.what(); }
     return {};
@@ -73,7 +76,8 @@ void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, in
         const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(first_rect++);
         const std::size_t bytes = 4 * std::size_t{picture.size_px.x};
         for (std::size_t y = 0; y < picture.size_px.y; ++y) {
-            std::copy_n(picture.rgba.data() + y * bytes, bytes, pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
+            std::copy_n(picture.rgba.data() + y * bytes, bytes,
+                        pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
         }
         ImVec2 low, high;
         atlas.CalcCustomRectUV(&rect, &low, &high);
@@ -99,7 +103,8 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std
         config.OversampleH = 2;  // a headset's pixels do not lie on the font's
         config.MergeMode = &bytes != &fonts.front().bytes;
         config.FontNo = font.number;
-        atlas.AddFontFromMemoryTTF(const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), kFontPx, &config, ranges.data());
+        atlas.AddFontFromMemoryTTF(const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), kFontPx,
+                                   &config, ranges.data());
     }
     if (!atlas.Build()) {
         atlas.Clear();
@@ -122,11 +127,14 @@ AtlasPicture pictureOf(const ScenePicture& scene, PicturePlaces& places) {
 AtlasPicture pictureOf(const FormedGlyph& sign, ImWchar letter) {
     const glm::uvec2 size_px = glm::max(sign.size_px, 1u);  // a blank has none
     std::vector<unsigned char> rgba(std::size_t{4} * size_px.x * size_px.y, 255);
-    for (std::size_t i = 0; i < rgba.size() / 4; ++i) { rgba[4 * i + 3] = i < sign.coverage.size() ? sign.coverage[i] : 0; }
+    for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+        rgba[4 * i + 3] = i < sign.coverage.size() ? sign.coverage[i] : 0;
+    }
     return {size_px, std::move(rgba), [&sign, letter](ImFont& font, const ImVec2& low, const ImVec2& high) {
                 const glm::vec2 at = sign.low_px + glm::vec2(0.0f, std::round(font.Ascent)),
                                 end = at + glm::vec2(sign.size_px) * glm::vec2(0.5f, 1.0f);
-                font.AddGlyph(nullptr, letter, at.x, at.y, end.x, end.y, low.x, low.y, high.x, high.y, sign.advance_px);
+                font.AddGlyph(nullptr, letter, at.x, at.y, end.x, end.y, low.x, low.y, high.x, high.y,
+                              sign.advance_px);
             }};
 }
 
@@ -157,7 +165,8 @@ bool looksLikeFont(std::span<const unsigned char> bytes) {
         names.emplace_back(reinterpret_cast<const char*>(bytes.data()) + at, 4);
     }
     const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
-    return has("cmap") && has("head") && has("hhea") && has("hmtx") && has("maxp") && ((has("glyf") && has("loca")) || has("CFF "));
+    return has("cmap") && has("head") && has("hhea") && has("hmtx") && has("maxp") &&
+           ((has("glyf") && has("loca")) || has("CFF "));
 }
 
 PanelFont::PanelFont() {
@@ -183,12 +192,15 @@ bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pic
         unsigned int letter = 0;
         at += std::max(ImTextCharFromUtf8(&letter, at, end), 1);
         const auto wanted = static_cast<ImWchar>(letter);
-        const bool is_letter = letter != IM_UNICODE_CODEPOINT_INVALID && (letter < kFirstPrivate || letter > kLastPrivate);
-        const bool is_there = isThereFromTheBeginning(wanted) && ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(wanted) != nullptr;
+        const bool is_letter =
+            letter != IM_UNICODE_CODEPOINT_INVALID && (letter < kFirstPrivate || letter > kLastPrivate);
+        const bool is_there = isThereFromTheBeginning(wanted) &&
+                              ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(wanted) != nullptr;
         if (is_letter && !is_there) { brought.insert(wanted); }
     }
     std::set<std::u32string> words = wordsToForm(text);
-    const bool shows_new = std::ranges::any_of(pictures, [&](const ScenePicture& picture) { return !pictures_.contains(picture.key); });
+    const bool shows_new = std::ranges::any_of(
+        pictures, [&](const ScenePicture& picture) { return !pictures_.contains(picture.key); });
     const bool says_new = brought.size() <= kMostAdded && words.size() <= kMostWords &&
                           (!std::ranges::includes(added_, brought) || !std::ranges::includes(words_, words));
     if (!says_new && !shows_new) { return false; }
@@ -198,8 +210,9 @@ bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pic
     }
     if (shows_new && pictures_.size() + pictures.size() > kMostPictures) { pictures_.clear(); }
     std::erase_if(pictures_, [&](const auto& kept) {
-        return std::ranges::any_of(pictures,
-                                   [&](const ScenePicture& later) { return later.file == kept.second.file && later.key != kept.first; });
+        return std::ranges::any_of(pictures, [&](const ScenePicture& later) {
+            return later.file == kept.second.file && later.key != kept.first;
+        });
     });
     for (const ScenePicture& picture : pictures) { pictures_.emplace(picture.key, picture); }
     if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
@@ -219,8 +232,9 @@ void PanelFont::build() {
         for (const fs::path& file : furtherSystemFonts()) { wanted.push_back({file}); }
     }
     for (const SystemFont& font : wanted) {
-        const bool is_there = std::ranges::any_of(
-            fonts_, [&](const LoadedFont& loaded) { return loaded.font.file == font.file && loaded.font.number == font.number; });
+        const bool is_there = std::ranges::any_of(fonts_, [&](const LoadedFont& loaded) {
+            return loaded.font.file == font.file && loaded.font.number == font.number;
+        });
         std::string complaint, bytes = is_there ? "" : readFont(font.file, complaint);
         if (!bytes.empty()) { fonts_.push_back({font, std::move(bytes)}); }
     }
@@ -238,7 +252,9 @@ void PanelFont::build() {
     built_.reset(IM_NEW(ImFontAtlas)());
     if (buildAtlas(*built_, fonts_, added_, pictures)) {
         for (const auto& [word, signs] : formed.words) {
-            for (const std::size_t sign : signs) { built_forms_[word] += static_cast<char32_t>(kFirstPrivate + sign); }
+            for (const std::size_t sign : signs) {
+                built_forms_[word] += static_cast<char32_t>(kFirstPrivate + sign);
+            }
         }
     } else if (!buildAtlas(*built_, std::span(fonts_).first(1), {}, std::span(pictures).first(scenes))) {
         built_.reset();

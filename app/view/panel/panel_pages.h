@@ -9,13 +9,17 @@ namespace binosplat {
 inline constexpr float kKeptShare = 0.74f;
 
 // For wearers: sharpness and smoothness, place, size of the scene, and ways to move.
-void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
+void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+                  PanelRequests& requests);
 // The same for a window.
-void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
+void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+                    PanelRequests& requests);
 // Choice of scene and viewpoint.
-void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests);
+void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status,
+                    PanelRequests& requests);
 // For those who study how the pictures are made, and at what cost.
-void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
+void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+                    PanelRequests& requests);
 
 // For a scene that moves, while status.time has a value.
 void drawTimePage(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests);

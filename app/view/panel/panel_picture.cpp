@@ -13,7 +13,9 @@ constexpr double kTimesSeconds = 0.25;
 
 }  // namespace
 
-PanelPicture::PanelPicture(const Context& context, vk::Format format) : canvas_(context, kPanelPx, format) { status_.entry = &entry_; }
+PanelPicture::PanelPicture(const Context& context, vk::Format format) : canvas_(context, kPanelPx, format) {
+    status_.entry = &entry_;
+}
 
 void PanelPicture::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
@@ -51,7 +53,8 @@ void PanelPicture::askFor(FileWorker& files, const ViewSettings& settings) {
     }
 }
 
-PanelRequests PanelPicture::layOut(const PanelPointer& pointer, const ViewSettings& settings, double step_seconds) {
+PanelRequests PanelPicture::layOut(const PanelPointer& pointer, const ViewSettings& settings,
+                                   double step_seconds) {
     canvas_.begin(pointer, step_seconds);
     PanelRequests requests = drawPanel(kPanelPx, settings, chooser_, status_);
     canvas_.end();

@@ -10,8 +10,9 @@ namespace binosplat {
 namespace {
 
 // Grey at rest, brighter when pointed at, yellow while pressed, blue if chosen: seen without reading.
-const ImVec4 kRests{0.20f, 0.23f, 0.28f, 1.0f}, kHovered{0.38f, 0.45f, 0.56f, 1.0f}, kPressed{0.80f, 0.55f, 0.10f, 1.0f},
-    kChosen{0.13f, 0.42f, 0.75f, 1.0f}, kChosenHovered{0.25f, 0.56f, 0.92f, 1.0f};
+const ImVec4 kRests{0.20f, 0.23f, 0.28f, 1.0f}, kHovered{0.38f, 0.45f, 0.56f, 1.0f},
+    kPressed{0.80f, 0.55f, 0.10f, 1.0f}, kChosen{0.13f, 0.42f, 0.75f, 1.0f},
+    kChosenHovered{0.25f, 0.56f, 0.92f, 1.0f};
 
 }  // namespace
 

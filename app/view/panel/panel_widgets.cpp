@@ -16,10 +16,13 @@ bool PanelWidgets::button(const char* name, bool chosen, const glm::vec2& size_p
     return pressed;
 }
 
-std::optional<std::size_t> PanelWidgets::row(std::span<const char* const> names, std::optional<std::size_t> chosen, float height_px,
+std::optional<std::size_t> PanelWidgets::row(std::span<const char* const> names,
+                                             std::optional<std::size_t> chosen, float height_px,
                                              float end_x) {
-    const float gap = 0.5f * ImGui::GetStyle().ItemSpacing.x, left = ImGui::GetCursorPosX(), start = ImGui::GetStyle().WindowPadding.x;
-    const float right = start + end_x * (ImGui::GetWindowWidth() - 2.0f * start), count = static_cast<float>(names.size());
+    const float gap = 0.5f * ImGui::GetStyle().ItemSpacing.x, left = ImGui::GetCursorPosX(),
+                start = ImGui::GetStyle().WindowPadding.x;
+    const float right = start + end_x * (ImGui::GetWindowWidth() - 2.0f * start),
+                count = static_cast<float>(names.size());
     const float width = (right - left - gap * (count - 1.0f)) / count;
     std::optional<std::size_t> pressed;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -35,7 +38,8 @@ bool PanelWidgets::checkbox(const char* name, bool* value) {
     return changed;
 }
 
-std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std::span<const std::string_view> names,
+std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label,
+                                                         std::span<const std::string_view> names,
                                                          std::string_view chosen, std::size_t per_row) {
     constexpr float kLabelShare = 0.25f;
     const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
@@ -47,10 +51,12 @@ std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std:
     };
     const float column = (1.0f - kLabelShare) * width / static_cast<float>(per_row);
     // If words are too long for equal columns, they get equal gaps.
-    const bool has_columns = std::ranges::all_of(names, [&](std::string_view name) { return widthOf(name) < column; });
+    const bool has_columns =
+        std::ranges::all_of(names, [&](std::string_view name) { return widthOf(name) < column; });
     float used = 0.0f;
     for (const std::string_view name : names) { used += widthOf(name); }
-    const float gap = ((1.0f - kLabelShare) * width - used) / std::max(static_cast<float>(names.size()) - 1.0f, 1.0f);
+    const float gap =
+        ((1.0f - kLabelShare) * width - used) / std::max(static_cast<float>(names.size()) - 1.0f, 1.0f);
     std::optional<std::string_view> pressed;
     float at = start + kLabelShare * width;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -68,21 +74,23 @@ std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std:
     return pressed;
 }
 
-bool PanelWidgets::entry(const std::string& name, const std::string& about, const std::string& trouble, const glm::vec2& size_px,
-                         float indent_px) {
+bool PanelWidgets::entry(const std::string& name, const std::string& about, const std::string& trouble,
+                         const glm::vec2& size_px, float indent_px) {
     // ImGui does not show what follows ## in a label: the text is drawn by itself, on a button without text.
     ImGui::PushID(name.c_str());
     ImGui::BeginDisabled(!trouble.empty());
     const bool pressed = ImGui::Button("##entry", ImVec2(size_px.x, size_px.y));
     ImGui::EndDisabled();
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    const float left = low.x + ImGui::GetStyle().FramePadding.x + indent_px, line = ImGui::GetTextLineHeight();
+    const float left = low.x + ImGui::GetStyle().FramePadding.x + indent_px,
+                line = ImGui::GetTextLineHeight();
     const std::string below = trouble.empty() ? about : trouble;
     const float lines = below.empty() ? line : 2.0f * line, top = 0.5f * (low.y + high.y - lines);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(low, high, true);
     const ImU32 grey = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-    draw.AddText(ImVec2(left, top), trouble.empty() ? ImGui::GetColorU32(ImGuiCol_Text) : grey, asShown(name).c_str());
+    draw.AddText(ImVec2(left, top), trouble.empty() ? ImGui::GetColorU32(ImGuiCol_Text) : grey,
+                 asShown(name).c_str());
     draw.AddText(ImVec2(left, top + line), grey, asShown(below).c_str());
     draw.PopClipRect();
     noteMiddle(name);
@@ -92,7 +100,8 @@ bool PanelWidgets::entry(const std::string& name, const std::string& about, cons
 
 bool PanelWidgets::star(const std::string& name, bool filled, const glm::vec2& size_px) {
     ImGui::PushID(name.c_str());
-    const bool pressed = ImGui::Button(filled ? "\xe2\x98\x85" : "\xe2\x98\x86", ImVec2(size_px.x, size_px.y));
+    const bool pressed =
+        ImGui::Button(filled ? "\xe2\x98\x85" : "\xe2\x98\x86", ImVec2(size_px.x, size_px.y));
     ImGui::PopID();
     noteMiddle(name);
     return pressed;
@@ -123,7 +132,8 @@ void writeWrapped(std::string_view text) {
     const float width = ImGui::GetContentRegionAvail().x;
     std::string shown;
     for (const char *at = clean.data(), *const end = at + clean.size(); at < end;) {
-        const char* const stop = std::max(ImGui::GetFont()->CalcWordWrapPositionA(1.0f, at, end, width), at + 1);
+        const char* const stop =
+            std::max(ImGui::GetFont()->CalcWordWrapPositionA(1.0f, at, end, width), at + 1);
         if (!shown.empty()) { shown += '\n'; }
         shown += asShown({at, stop});
         for (at = stop; at < end && *at == ' ';) { ++at; }

@@ -22,19 +22,20 @@ public:
     bool button(const char* name, bool chosen = false, const glm::vec2& size_px = {0.0f, 0.0f});
     // Buttons of equal width in one row from here to `end_x`, a share of the line; returns the one that was
     // pressed. `chosen`: the one that stands out, if any.
-    std::optional<std::size_t> row(std::span<const char* const> names, std::optional<std::size_t> chosen, float height_px,
-                                   float end_x = 1.0f);
+    std::optional<std::size_t> row(std::span<const char* const> names, std::optional<std::size_t> chosen,
+                                   float height_px, float end_x = 1.0f);
     bool checkbox(const char* name, bool* value);
     // A row of its own, `size_px` large, for a name that is shown literally, with `about` below it; `trouble`
     // greys it out, and is shown in place of `about`. The text begins `indent_px` from the left.
-    bool entry(const std::string& name, const std::string& about, const std::string& trouble, const glm::vec2& size_px, float indent_px);
+    bool entry(const std::string& name, const std::string& about, const std::string& trouble,
+               const glm::vec2& size_px, float indent_px);
     // A star, called `name` in places().
     bool star(const std::string& name, bool filled, const glm::vec2& size_px);
     // Call after a slider, to note its place.
     void noteSlider(const std::string& name) { note(name, ImGui::CalcItemWidth()); }
     // Rows of names beside their label, of which one is chosen; returns the one that was pressed, if any.
-    std::optional<std::string_view> chooseFrom(const char* label, std::span<const std::string_view> names, std::string_view chosen,
-                                               std::size_t per_row);
+    std::optional<std::string_view> chooseFrom(const char* label, std::span<const std::string_view> names,
+                                               std::string_view chosen, std::size_t per_row);
 
     [[nodiscard]] const WidgetPlaces& places() const { return places_; }
 

@@ -9,7 +9,8 @@
 namespace binosplat {
 
 SceneList makeSceneList(const SceneListWish& wish) {
-    SceneList list = wish.recent ? listScenes("Favourites and recent scenes", favouriteAndRecentScenes()) : listFolder(wish.folder);
+    SceneList list = wish.recent ? listScenes("Favourites and recent scenes", favouriteAndRecentScenes())
+                                 : listFolder(wish.folder);
     describeScenes(list);
     return list;
 }
@@ -31,7 +32,9 @@ void SceneChooser::want() {
     is_reading_ = is_wish_new_ = true;
 }
 
-std::optional<SceneListWish> SceneChooser::takeWish() { return std::exchange(is_wish_new_, false) ? std::optional(wish_) : std::nullopt; }
+std::optional<SceneListWish> SceneChooser::takeWish() {
+    return std::exchange(is_wish_new_, false) ? std::optional(wish_) : std::nullopt;
+}
 
 void SceneChooser::show(SceneList list, const SceneListWish& wish) {
     if (wish.number != wish_.number) { return; }
@@ -51,7 +54,8 @@ void SceneChooser::refresh(const std::string& scene) {
 
 void SceneChooser::turn(int pages) {
     const auto last = static_cast<std::ptrdiff_t>(pageCount()) - 1;
-    page_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(page_) + pages, 0, last));
+    page_ = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(page_) + pages, 0, last));
 }
 
 std::string SceneChooser::open(const SceneEntry& entry) {
@@ -66,6 +70,8 @@ std::span<const SceneEntry> SceneChooser::shown() const {
     return std::span(list_.entries).subspan(first, std::min(kRows, list_.entries.size() - first));
 }
 
-std::size_t SceneChooser::pageCount() const { return std::max<std::size_t>((list_.entries.size() + kRows - 1) / kRows, 1); }
+std::size_t SceneChooser::pageCount() const {
+    return std::max<std::size_t>((list_.entries.size() + kRows - 1) / kRows, 1);
+}
 
 }  // namespace binosplat

@@ -43,29 +43,39 @@ void drawPicture(const SceneEntry& entry, const ImVec2& low, const PicturePlaces
     const auto found = places->find(entry.picture.key);
     if (found == places->end()) { return; }
     const PictureCorners& corners = found->second;
-    const float height = kRowPx - 6.0f, width = height * static_cast<float>(kScenePicturePx.x) / static_cast<float>(kScenePicturePx.y);
+    const float height = kRowPx - 6.0f, width = height * static_cast<float>(kScenePicturePx.x) /
+                                                static_cast<float>(kScenePicturePx.y);
     const ImVec2 at(low.x + 3.0f, low.y + 3.0f);
-    ImGui::GetWindowDrawList()->AddImage(ImGui::GetIO().Fonts->TexID, at, ImVec2(at.x + width, at.y + height), corners.low, corners.high);
+    ImGui::GetWindowDrawList()->AddImage(ImGui::GetIO().Fonts->TexID, at, ImVec2(at.x + width, at.y + height),
+                                         corners.low, corners.high);
 }
 
-void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, PanelRequests& requests) {
+void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places,
+                 PanelRequests& requests) {
     // Always room for kRows entries, so that the widgets below stay in place.
     const float rows = static_cast<float>(SceneChooser::kRows) * (kRowPx + ImGui::GetStyle().ItemSpacing.y);
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows + ImGui::GetTextLineHeightWithSpacing()));
     writeLine(endOf(asShown(chooser.list().title)));
     if (!chooser.list().trouble.empty()) { writeWrapped(chooser.list().trouble); }
-    if (chooser.list().trouble.empty() && chooser.list().entries.empty() && !chooser.isReading()) { writeLine("No scenes and no folders"); }
+    if (chooser.list().trouble.empty() && chooser.list().entries.empty() && !chooser.isReading()) {
+        writeLine("No scenes and no folders");
+    }
     const SceneEntry* pressed = nullptr;
     for (const SceneEntry& entry : chooser.shown()) {
         const ImVec2 low = ImGui::GetCursorScreenPos();
         const float gap = ImGui::GetStyle().ItemSpacing.x,
                     width = ImGui::GetContentRegionAvail().x - (entry.is_folder ? 0.0f : kStarPx + gap);
         const std::string name = entry.is_folder ? entry.name + "/" : entry.name;
-        if (widgets.entry(name, entry.about, entry.trouble, {width, kRowPx}, entry.is_folder ? 0.0f : 1.4f * kRowPx)) { pressed = &entry; }
+        if (widgets.entry(name, entry.about, entry.trouble, {width, kRowPx},
+                          entry.is_folder ? 0.0f : 1.4f * kRowPx)) {
+            pressed = &entry;
+        }
         drawPicture(entry, low, places);
         if (entry.is_folder) { continue; }
         ImGui::SameLine();
-        if (widgets.star("favourite " + entry.name, entry.is_favourite, {kStarPx, kRowPx})) { requests.favourite = entry.place; }
+        if (widgets.star("favourite " + entry.name, entry.is_favourite, {kStarPx, kRowPx})) {
+            requests.favourite = entry.place;
+        }
     }
     if (pressed != nullptr) { requests.chosen_scene = chooser.open(*pressed); }
     ImGui::EndChild();
@@ -89,7 +99,8 @@ void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelReque
         requests.keep_viewpoint = *pressed == 2;
     }
     static constexpr std::array kWithOwn{"Tour", "Name", "Earlier", "Later", "Forget", "Export", "Import"};
-    if (const auto pressed = widgets.row(kWithOwn, status.tours ? std::optional<std::size_t>(0) : std::nullopt, kTargetPx)) {
+    if (const auto pressed =
+            widgets.row(kWithOwn, status.tours ? std::optional<std::size_t>(0) : std::nullopt, kTargetPx)) {
         requests.tour = *pressed == 0;
         requests.rename_viewpoint = *pressed == 1;
         requests.viewpoint_move = *pressed == 2 ? -1 : *pressed == 3 ? 1 : 0;
@@ -98,15 +109,18 @@ void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelReque
         requests.read_viewpoints = *pressed == 6;
     }
     const std::size_t count = status.viewpoint_count;
-    std::string words =
-        count == 0 ? "No viewpoints yet: keep one, or put a cameras.json beside the scene" : fmt::format("{} viewpoints", count);
-    if (const auto& at = status.place.view) { words = fmt::format("Viewpoint {} of {}: {}", *at + 1, count, status.viewpoint); }
+    std::string words = count == 0 ? "No viewpoints yet: keep one, or put a cameras.json beside the scene"
+                                   : fmt::format("{} viewpoints", count);
+    if (const auto& at = status.place.view) {
+        words = fmt::format("Viewpoint {} of {}: {}", *at + 1, count, status.viewpoint);
+    }
     writeLine(endOf(asShown(words)));
 }
 
 }  // namespace
 
-void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests) {
+void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status,
+                    PanelRequests& requests) {
     drawPlaces(widgets, chooser);
     drawEntries(widgets, chooser, status.pictures, requests);
     static constexpr std::array kScenes{"Previous scene", "Next scene", "Last shown"};

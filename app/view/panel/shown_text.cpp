@@ -25,13 +25,14 @@ bool mayChange(std::string_view text) {
 bool isOfWord(char32_t letter) {
     constexpr std::array<std::pair<char32_t, char32_t>, 4> kScripts{
         {{0x0590, 0x11ff}, {0x1700, 0x1cff}, {0xa800, 0xabff}, {0x10000, 0x10ffff}}};
-    return std::ranges::any_of(kScripts, [&](const auto& range) { return letter >= range.first && letter <= range.second; });
+    return std::ranges::any_of(
+        kScripts, [&](const auto& range) { return letter >= range.first && letter <= range.second; });
 }
 
 // Also characters that join letters, keep them apart or choose between their forms.
 bool isWithinWord(char32_t letter) {
-    return isOfWord(letter) || letter == 0x200c || letter == 0x200d || (letter >= 0x0300 && letter <= 0x036f) ||
-           (letter >= 0xfe00 && letter <= 0xfe0f);
+    return isOfWord(letter) || letter == 0x200c || letter == 0x200d ||
+           (letter >= 0x0300 && letter <= 0x036f) || (letter >= 0xfe00 && letter <= 0xfe0f);
 }
 
 std::u32string lettersOf(std::string_view text) {
@@ -40,14 +41,18 @@ std::u32string lettersOf(std::string_view text) {
         unsigned int letter = 0;
         const int bytes = std::max(ImTextCharFromUtf8(&letter, at, end), 1);
         if (bytes == 4) {  // ImGui knows only the length of these
-            const auto bits = [&](int i) { return static_cast<unsigned>(static_cast<unsigned char>(at[i])) & 0x3fu; };
+            const auto bits = [&](int i) {
+                return static_cast<unsigned>(static_cast<unsigned char>(at[i])) & 0x3fu;
+            };
             const auto continues = [&](int i) { return (static_cast<unsigned char>(at[i]) & 0xc0) == 0x80; };
             const unsigned whole = (bits(0) & 7u) << 18 | bits(1) << 12 | bits(2) << 6 | bits(3);
-            const bool is_one = continues(1) && continues(2) && continues(3) && whole >= 0x10000 && whole <= 0x10ffff;
+            const bool is_one =
+                continues(1) && continues(2) && continues(3) && whole >= 0x10000 && whole <= 0x10ffff;
             letter = is_one ? whole : IM_UNICODE_CODEPOINT_INVALID;
         }
         at += bytes;
-        letters += letter >= kFirstPrivate && letter <= kLastPrivate ? char32_t{IM_UNICODE_CODEPOINT_INVALID} : char32_t{letter};
+        letters += letter >= kFirstPrivate && letter <= kLastPrivate ? char32_t{IM_UNICODE_CODEPOINT_INVALID}
+                                                                     : char32_t{letter};
     }
     return letters;
 }
@@ -74,10 +79,13 @@ std::string changed(const std::string& text) {
     std::vector<FriBidiChar> seen(letters.size() + 1);
     std::vector<FriBidiStrIndex> places(letters.size() + 1);  // of the letters seen, among those read
     FriBidiParType base = FRIBIDI_PAR_LTR;                    // a path, or a sentence in English
-    if (fribidi_log2vis(read.data(), static_cast<FriBidiStrIndex>(read.size()), &base, seen.data(), nullptr, places.data(), nullptr) == 0) {
+    if (fribidi_log2vis(read.data(), static_cast<FriBidiStrIndex>(read.size()), &base, seen.data(), nullptr,
+                        places.data(), nullptr) == 0) {
         return text;
     }
-    const auto* const forms = ImGui::GetCurrentContext() != nullptr ? static_cast<const WordForms*>(ImGui::GetIO().UserData) : nullptr;
+    const auto* const forms = ImGui::GetCurrentContext() != nullptr
+                                  ? static_cast<const WordForms*>(ImGui::GetIO().UserData)
+                                  : nullptr;
     std::vector<const std::u32string*> forms_at(letters.size(), nullptr);
     forEachWord(letters, [&](std::size_t begin, std::size_t end) {
         if (forms == nullptr) { return; }
@@ -118,7 +126,9 @@ std::set<std::u32string> wordsToForm(std::string_view text) {
     std::set<std::u32string> words;
     if (!mayChange(text)) { return words; }
     const std::u32string letters = lettersOf(text);
-    forEachWord(letters, [&](std::size_t begin, std::size_t end) { words.insert(letters.substr(begin, end - begin)); });
+    forEachWord(letters, [&](std::size_t begin, std::size_t end) {
+        words.insert(letters.substr(begin, end - begin));
+    });
     return words;
 }
 

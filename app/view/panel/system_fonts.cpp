@@ -20,7 +20,9 @@ bool isTrue(FcPattern* font, const char* property) {
 }
 
 // ImGui's font reader knows only plain outlines: no colours and no variable fonts.
-bool isReadable(FcPattern* font) { return isTrue(font, FC_OUTLINE) && !isTrue(font, FC_COLOR) && !isTrue(font, FC_VARIABLE); }
+bool isReadable(FcPattern* font) {
+    return isTrue(font, FC_OUTLINE) && !isTrue(font, FC_COLOR) && !isTrue(font, FC_VARIABLE);
+}
 
 }  // namespace
 
@@ -48,7 +50,10 @@ std::vector<SystemFont> fontsWith(const std::set<std::uint32_t>& letters) {
             continue;
         }
         static_cast<void>(FcPatternGetInteger(font, FC_INDEX, 0, &number));
-        if (std::erase_if(left, [&](std::uint32_t letter) { return FcCharSetHasChar(has, letter) == FcTrue; }) == 0) { continue; }
+        if (std::erase_if(
+                left, [&](std::uint32_t letter) { return FcCharSetHasChar(has, letter) == FcTrue; }) == 0) {
+            continue;
+        }
         fonts.push_back({reinterpret_cast<const char*>(file), number & 0xffff});
     }
     return fonts;

@@ -60,7 +60,8 @@ void drawTextEntry(PanelWidgets& widgets, TextEntry& entry, PanelRequests& reque
     } else {
         for (const char* keys : kRowsOfKeys) { drawRowOfKeys(widgets, entry, keys); }
         static constexpr std::array kSpaces{"Capitals", "Space"};
-        if (const auto pressed = widgets.row(kSpaces, entry.capitals ? std::optional<std::size_t>(0) : std::nullopt, kTabPx)) {
+        if (const auto pressed =
+                widgets.row(kSpaces, entry.capitals ? std::optional<std::size_t>(0) : std::nullopt, kTabPx)) {
             *pressed == 0 ? static_cast<void>(entry.capitals = !entry.capitals) : entry.type(" ");
         }
     }

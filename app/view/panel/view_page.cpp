@@ -32,18 +32,21 @@ std::string describeRate(const ShownRate& rate, Quality quality) {
     const std::string resolution = fmt::format("resolution {:.0f} %", 100.0 * rate.resolution);
     if (!(rate.met_hz > 0.0)) { return resolution; }
     const std::string late = rate.late > 0 ? fmt::format(" ({} late)", rate.late) : "";
-    std::string words = fmt::format("{:.0f} of {:.0f} Hz{}, {}", std::min(rate.met_hz, rate.display_hz), rate.display_hz, late, resolution);
+    std::string words = fmt::format("{:.0f} of {:.0f} Hz{}, {}", std::min(rate.met_hz, rate.display_hz),
+                                    rate.display_hz, late, resolution);
     if (rate.is_beaten) { return words + ": too much for this computer even so"; }
     if (quality == Quality::kOff) { return words + "; choose one to hold it"; }
     if (rate.bound_db) { return fmt::format("{}, errors within {:.0f} dB", words, *rate.bound_db); }
-    return rate.budget ? fmt::format("{}, {:.0f} % of it rendered again", words, 100.0 * *rate.budget) : words;
+    return rate.budget ? fmt::format("{}, {:.0f} % of it rendered again", words, 100.0 * *rate.budget)
+                       : words;
 }
 
 void drawQualityRow(PanelWidgets& widgets, ViewSettings& settings, const ShownRate& rate) {
     static constexpr std::array kNames{"Sharp", "Balanced", "Fast"};
     static constexpr std::array kQualities{Quality::kSharp, Quality::kBalanced, Quality::kFast};
     const auto found = std::ranges::find(kQualities, settings.quality);
-    const auto chosen = found == kQualities.end() ? std::nullopt : std::optional<std::size_t>(found - kQualities.begin());
+    const auto chosen =
+        found == kQualities.end() ? std::nullopt : std::optional<std::size_t>(found - kQualities.begin());
     if (const auto pressed = widgets.row(kNames, chosen, kLargeTargetPx)) {
         settings.quality = pressed == chosen ? Quality::kOff : kQualities[*pressed];
     }
@@ -52,7 +55,9 @@ void drawQualityRow(PanelWidgets& widgets, ViewSettings& settings, const ShownRa
 
 std::string describeSize(const ShownPlace& place) {
     const double g = place.growth;
-    const std::string scale = std::abs(g - 1.0) < 0.005 ? "1:1" : g > 1.0 ? fmt::format("{:.3g}:1", g) : fmt::format("1:{:.3g}", 1.0 / g);
+    const std::string scale = std::abs(g - 1.0) < 0.005 ? "1:1"
+                              : g > 1.0                 ? fmt::format("{:.3g}:1", g)
+                                                        : fmt::format("1:{:.3g}", 1.0 / g);
     if (!(place.size_m > 0.0)) { return fmt::format("Size {}", scale); }
     return place.size_m < 0.995 ? fmt::format("Size {:.0f} cm, {}", 100.0 * place.size_m, scale)
                                 : fmt::format("Size {:.3g} m, {}", place.size_m, scale);
@@ -60,7 +65,8 @@ std::string describeSize(const ShownPlace& place) {
 
 std::string describeHeight(const ShownPlace& place) {
     if (place.has_floor) { return fmt::format("Eyes {:.2f} m above the floor", place.eyes_m); }
-    return std::abs(place.eyes_m) < 0.005 ? "Height as at the start" : fmt::format("Height {:+.2f} m", place.eyes_m);
+    return std::abs(place.eyes_m) < 0.005 ? "Height as at the start"
+                                          : fmt::format("Height {:+.2f} m", place.eyes_m);
 }
 
 void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& requests) {
@@ -88,12 +94,16 @@ void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& re
 
 // Some words, and a choice of one of a few names.
 template <typename Chosen, std::size_t kCount>
-void choose(PanelWidgets& widgets, const char* words, const std::array<const char*, kCount>& names, Chosen& chosen) {
+void choose(PanelWidgets& widgets, const char* words, const std::array<const char*, kCount>& names,
+            Chosen& chosen) {
     writeBefore(words, kTargetPx);
-    if (const auto pressed = widgets.row(names, static_cast<std::size_t>(chosen), kTargetPx)) { chosen = static_cast<Chosen>(*pressed); }
+    if (const auto pressed = widgets.row(names, static_cast<std::size_t>(chosen), kTargetPx)) {
+        chosen = static_cast<Chosen>(*pressed);
+    }
 }
 
-void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector<ToolChoice>& tools, bool can_pass_through) {
+void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector<ToolChoice>& tools,
+                bool can_pass_through) {
     for (const ToolChoice& tool : tools) {
         if (tool.names[0] != nullptr) { choose(widgets, tool.words, tool.names, settings.*tool.chosen); }
     }
@@ -137,7 +147,8 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
 
 }  // namespace
 
-void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
+void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+                  PanelRequests& requests) {
     drawQualityRow(widgets, settings, status.rate);
     drawPlace(widgets, status.place, requests);
     drawMoving(widgets, settings, status.tools, status.can_pass_through);

@@ -46,7 +46,8 @@ void drawStereo(PanelWidgets& widgets, ViewSettings& settings) {
     }
     ImGui::BeginDisabled(settings.window_stereo == WindowStereo::kMono);
     ImGui::PushItemWidth(kWindowSliderShare * ImGui::GetContentRegionAvail().x);
-    auto eyes = static_cast<float>(100.0 * settings.window_eyes), plane = static_cast<float>(settings.window_plane);
+    auto eyes = static_cast<float>(100.0 * settings.window_eyes),
+         plane = static_cast<float>(settings.window_plane);
     if (ImGui::SliderFloat("eye distance", &eyes, 0.0f, 20.0f, "%.1f %%")) {
         settings.window_eyes = std::clamp(0.01 * static_cast<double>(eyes), 0.0, 0.2);
     }
@@ -61,10 +62,12 @@ void drawStereo(PanelWidgets& widgets, ViewSettings& settings) {
 
 }  // namespace
 
-void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
+void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status,
+                    PanelRequests& requests) {
     static constexpr std::array kPlaces{"Open", "Compare", "Whole scene", "Start view", "True size"};
     const bool compares = status.compares || status.compares_next;
-    if (const auto pressed = widgets.row(kPlaces, compares ? std::optional<std::size_t>(1) : std::nullopt, kLargeTargetPx)) {
+    if (const auto pressed =
+            widgets.row(kPlaces, compares ? std::optional<std::size_t>(1) : std::nullopt, kLargeTargetPx)) {
         (*pressed == 0   ? requests.open_file
          : *pressed == 1 ? requests.compare
          : *pressed == 2 ? requests.show_whole
@@ -76,7 +79,8 @@ void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
     ImGui::AlignTextToFramePadding();
     writeLine("Background");
     ImGui::SameLine();
-    if (const auto pressed = widgets.row(kBackdrops, static_cast<std::size_t>(settings.backdrop), kTargetPx)) {
+    if (const auto pressed =
+            widgets.row(kBackdrops, static_cast<std::size_t>(settings.backdrop), kTargetPx)) {
         settings.backdrop = static_cast<Backdrop>(*pressed);
     }
     static constexpr std::array kKept{"Picture", "Save", "Load"};
@@ -86,7 +90,8 @@ void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
     ImGui::SameLine();
     widgets.checkbox("Both eyes", &settings.picture_both_eyes);
     const std::array window{status.window->fills_screen ? "Window" : "Full screen", "Help"};
-    if (const auto pressed = widgets.row(window, status.window->helps ? std::optional<std::size_t>(1) : std::nullopt, kTargetPx)) {
+    if (const auto pressed = widgets.row(
+            window, status.window->helps ? std::optional<std::size_t>(1) : std::nullopt, kTargetPx)) {
         (*pressed == 0 ? requests.fill_screen : requests.help) = true;
     }
     status.window->helps ? drawKeys() : drawSaid(status);

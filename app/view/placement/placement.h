@@ -28,8 +28,8 @@ Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, c
 // Two points of the scene are held, at `from` before and at `to` now: the scene moves, turns about the
 // vertical and grows with them, or turns freely with them if `tilted`. Points above one another do not turn
 // it about the vertical, and the scale stays within 1e-6 and 1e6 scene units in a metre.
-Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
-                  bool tilted = false);
+Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from,
+                  const std::array<glm::dvec3, 2>& to, bool tilted = false);
 // Makes the scene upright, given its up direction `up`, a unit vector, with the same heading; `about`, in the
 // room, stays in place.
 Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up, const glm::dvec3& about);

@@ -19,7 +19,8 @@ std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);
 Pose roomFromHead(const std::array<Pose, 2>& room_from_eyes);
 
 // An eye as frames take it.
-Eye eyeInScene(const Similarity& scene_from_room, const Pose& room_from_eye, const XrFovf& fov, glm::uvec2 size_px);
+Eye eyeInScene(const Similarity& scene_from_room, const Pose& room_from_eye, const XrFovf& fov,
+               glm::uvec2 size_px);
 // What a frame's picture is of, as the runtime is told: seen from `place` in the room.
 xr::EyeView pictureInRoom(const Similarity& scene_from_room, const Eye& picture, const XrVector3f& place);
 

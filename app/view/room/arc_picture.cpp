@@ -13,7 +13,8 @@ constexpr double kHalfWidthMetres = 0.006;
 constexpr double kMostGrowth = 2.0;  // of what lies before its picture, for an eye that is close to its plane
 
 // Where the eye sees the points in the picture's plane, metres from its middle.
-std::vector<glm::dvec2> seenIn(const Strip& place, std::span<const glm::dvec3> points, const glm::dvec3& eye) {
+std::vector<glm::dvec2> seenIn(const Strip& place, std::span<const glm::dvec3> points,
+                               const glm::dvec3& eye) {
     const Pose picture_from_room = inverse(place.room_from_strip);
     const glm::dvec3 eye_there = transform(picture_from_room, eye);
     std::vector<glm::dvec2> seen;
@@ -29,7 +30,8 @@ double distanceTo(const std::vector<glm::dvec2>& line, const glm::dvec2& at) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
         const glm::dvec2 along = line[i + 1] - line[i];
-        const double t = std::clamp(glm::dot(at - line[i], along) / std::max(glm::dot(along, along), 1e-12), 0.0, 1.0);
+        const double t =
+            std::clamp(glm::dot(at - line[i], along) / std::max(glm::dot(along, along), 1e-12), 0.0, 1.0);
         least = std::min(least, glm::distance(at, line[i] + t * along));
     }
     return least;
@@ -54,11 +56,13 @@ ArcPicture drawArc(const Arc& arc, const glm::dvec3& eye, const TexelLayout& lay
         glm::dvec2 half(0.0);
         for (const glm::dvec2& at : line) { half = glm::max(half, glm::abs(at)); }
         // Nothing but transparent texels lies at the border, where filters read beyond it.
-        place->size_m = 2.0 * (half + kHalfWidthMetres) * glm::dvec2(kArcPiecePx) / (glm::dvec2(kArcPiecePx) - 4.0);
+        place->size_m =
+            2.0 * (half + kHalfWidthMetres) * glm::dvec2(kArcPiecePx) / (glm::dvec2(kArcPiecePx) - 4.0);
         const glm::dvec2 texel_m = place->size_m / glm::dvec2(kArcPiecePx);
         for (std::uint32_t y = 0; y < kArcPiecePx.y; ++y) {
             for (std::uint32_t x = 0; x < kArcPiecePx.x; ++x) {
-                const double alpha = alphaAt(distanceTo(line, (glm::dvec2(x, y) + 0.5) * texel_m - 0.5 * place->size_m));
+                const double alpha =
+                    alphaAt(distanceTo(line, (glm::dvec2(x, y) + 0.5) * texel_m - 0.5 * place->size_m));
                 drawn.picture.texels[std::size_t{y} * kArcPx.x + piece * kArcPiecePx.x + x] =
                     texelOf(arc.is_blocked ? kBlockedLight : kRayLight, alpha, layout);
             }

@@ -14,7 +14,9 @@ constexpr double kSeconds = 0.3;
 constexpr double kJumpMetres = 0.3, kJumpRadians = 0.6, kJumpGrowth = 1.3;
 
 bool isJump(const Similarity& from, const Similarity& to, const Pose& room_from_head) {
-    const double metres = glm::distance(transform(from, room_from_head.position), transform(to, room_from_head.position)) / to.scale;
+    const double metres =
+        glm::distance(transform(from, room_from_head.position), transform(to, room_from_head.position)) /
+        to.scale;
     const double cosine = std::min(std::abs(glm::dot(from.orientation, to.orientation)), 1.0);
     return metres > kJumpMetres || 2.0 * std::acos(cosine) > kJumpRadians ||
            std::abs(std::log(to.scale / from.scale)) > std::log(kJumpGrowth);

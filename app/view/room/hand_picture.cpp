@@ -44,14 +44,17 @@ void drawBone(const SeenJoint& a, const SeenJoint& b, const glm::uvec2& size_px,
         for (auto x = static_cast<std::uint32_t>(low.x); x <= static_cast<std::uint32_t>(high.x); ++x) {
             const glm::dvec2 at(x + 0.5, y + 0.5);
             const double t = std::clamp(glm::dot(at - a.at, along) / length2, 0.0, 1.0);
-            const double radius = glm::mix(a.radius, b.radius, t), aside = glm::distance(at, a.at + t * along);
+            const double radius = glm::mix(a.radius, b.radius, t),
+                         aside = glm::distance(at, a.at + t * along);
             const double alpha = std::clamp((radius - aside) / kRimTexels + 0.5, 0.0, 1.0);
             if (alpha == 0.0) { continue; }
             const double facing_eye = std::sqrt(std::max(0.0, 1.0 - aside * aside / (radius * radius)));
             const double depth = glm::mix(a.depth, b.depth, t) - radius * facing_eye;
             Hit& hit = hits[std::size_t{y} * size_px.x + x];
             // A rim is translucent: what was drawn behind it shows through.
-            if (alpha == 1.0 ? depth < hit.depth : hit.alpha < 1.0) { hit = {depth, 0.3 + 0.7 * facing_eye, std::max(alpha, hit.alpha)}; }
+            if (alpha == 1.0 ? depth < hit.depth : hit.alpha < 1.0) {
+                hit = {depth, 0.3 + 0.7 * facing_eye, std::max(alpha, hit.alpha)};
+            }
         }
     }
 }
@@ -62,7 +65,8 @@ Strip handPicturePlace(const xr::HandJoints& joints, const glm::dvec3& eye) {
     return facing(joints[XR_HAND_JOINT_PALM_EXT].place, glm::dvec2(kPictureMetres), eye);
 }
 
-TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const glm::dvec3& eye, const TexelLayout& layout) {
+TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const glm::dvec3& eye,
+                      const TexelLayout& layout) {
     TexelPicture picture{kHandPicturePx, {}};
     const glm::dvec2 size(picture.size_px), texels_per_metre = size / place.size_m;
     const Pose picture_from_room = inverse(place.room_from_strip);
@@ -74,7 +78,8 @@ TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const gl
         const double depth_m = std::max(joint.z - eye_there.z, 0.02), growth = -eye_there.z / depth_m;
         const glm::dvec2 at = glm::dvec2(eye_there) + growth * (glm::dvec2(joint) - glm::dvec2(eye_there));
         const double radius_m = std::max(joints[i].radius_m, kLeastRadiusMetres);
-        seen[i] = {at * texels_per_metre + 0.5 * size, radius_m * growth * texels_per_metre.x, joint.z * texels_per_metre.x};
+        seen[i] = {at * texels_per_metre + 0.5 * size, radius_m * growth * texels_per_metre.x,
+                   joint.z * texels_per_metre.x};
     }
     std::vector<Hit> hits(std::size_t{picture.size_px.x} * picture.size_px.y);
     for (std::size_t joint = 0; joint < seen.size(); ++joint) {
@@ -83,7 +88,9 @@ TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const gl
         drawBone(seen[is_first ? kWrist : joint - 1], seen[joint], picture.size_px, hits);
     }
     picture.texels.reserve(hits.size());
-    for (const Hit& hit : hits) { picture.texels.push_back(texelOf(hit.brightness * kSkinLight, hit.alpha, layout)); }
+    for (const Hit& hit : hits) {
+        picture.texels.push_back(texelOf(hit.brightness * kSkinLight, hit.alpha, layout));
+    }
     return picture;
 }
 

@@ -22,19 +22,22 @@ constexpr double kUnseenRadians = 1.4, kFarMetres = 3.0, kUnseenSeconds = 1.5;
 }  // namespace
 
 PanelInRoom::PanelInRoom(glm::uvec2 size_px, double width_m)
-    : size_px_(size_px), size_m_(width_m, width_m * static_cast<double>(size_px.y) / static_cast<double>(size_px.x)) {
+    : size_px_(size_px),
+      size_m_(width_m, width_m * static_cast<double>(size_px.y) / static_cast<double>(size_px.x)) {
     hangBefore({});
 }
 
 void PanelInRoom::hangBefore(const Pose& room_from_head) {
-    const Pose upright = lookAt(room_from_head.position, room_from_head.position + levelAhead(room_from_head), kUp);
+    const Pose upright =
+        lookAt(room_from_head.position, room_from_head.position + levelAhead(room_from_head), kUp);
     const glm::dvec3 place = transform(upright, kPlaceMetres);
     room_from_panel_ = lookAt(place, place + (place - room_from_head.position), kUp);
 }
 
 void PanelInRoom::comeBefore(const Pose& room_from_head, double step_seconds) {
     const glm::dvec3 place = transform(inverse(room_from_head), room_from_panel_.position);
-    const bool is_seen = place.z > std::cos(kUnseenRadians) * glm::length(place) && glm::length(place) < kFarMetres;
+    const bool is_seen =
+        place.z > std::cos(kUnseenRadians) * glm::length(place) && glm::length(place) < kFarMetres;
     unseen_seconds_ = is_seen || pointing_hand_ || carrier_ ? 0.0 : unseen_seconds_ + step_seconds;
     if (unseen_seconds_ < kUnseenSeconds) { return; }
     unseen_seconds_ = 0.0;
@@ -43,7 +46,8 @@ void PanelInRoom::comeBefore(const Pose& room_from_head, double step_seconds) {
 
 std::optional<PanelInRoom::Hit> PanelInRoom::meet(const Pose& room_from_aim) const {
     const Pose panel_from_aim = compose(inverse(room_from_panel_), room_from_aim);
-    const glm::dvec3 direction = panel_from_aim.orientation * glm::dvec3(0.0, 0.0, 1.0), &from = panel_from_aim.position;
+    const glm::dvec3 direction = panel_from_aim.orientation * glm::dvec3(0.0, 0.0, 1.0),
+                     &from = panel_from_aim.position;
     if (direction.z < 1e-3 || from.z >= 0.0) { return std::nullopt; }  // from behind, or alongside
     const double distance = -from.z / direction.z;
     const glm::dvec2 share = glm::dvec2(from + distance * direction) / size_m_ + 0.5;
@@ -89,7 +93,8 @@ void PanelInRoom::update(const std::array<xr::Hand, 2>& hands, bool shown) {
     if (!of(pointer).hit) { return; }
     pointing_hand_ = pointer;
     const double scroll = hands[static_cast<std::size_t>(pointer)].stick.y;
-    pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here, std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
+    pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here,
+                std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
 }
 
 std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> without,
@@ -107,7 +112,8 @@ std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> w
         if (hand.hit || !met_m) { continue; }
         // The same apparent size wherever it is.
         const glm::dvec3 place = transform(*hand.aim, glm::dvec3(0.0, 0.0, *met_m));
-        rays.push_back({Sprite::kRing, facing(place, glm::dvec2(kRingShare * glm::distance(place, eye)), eye)});
+        rays.push_back(
+            {Sprite::kRing, facing(place, glm::dvec2(kRingShare * glm::distance(place, eye)), eye)});
     }
     return rays;
 }

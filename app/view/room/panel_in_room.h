@@ -44,7 +44,9 @@ public:
     [[nodiscard]] std::vector<Thing> rays(const glm::dvec3& eye, std::optional<int> without,
                                           const std::array<std::optional<double>, 2>& meets_m = {}) const;
     // Where this hand points, if it has a ray that misses the panel.
-    [[nodiscard]] std::optional<Pose> missesWith(int hand) const { return of(hand).hit ? std::nullopt : of(hand).aim; }
+    [[nodiscard]] std::optional<Pose> missesWith(int hand) const {
+        return of(hand).hit ? std::nullopt : of(hand).aim;
+    }
 
 private:
     // Where on the canvas and how far along the ray; empty if it misses.

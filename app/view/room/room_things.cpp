@@ -10,7 +10,8 @@ namespace binosplat {
 namespace {
 
 // A controller of no particular make: a handle in the fist, and a knob in front of it.
-constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045, kKnobMetres = 0.055;
+constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045,
+                 kKnobMetres = 0.055;
 // A message is a little below where one looks, as wide as a newspaper.
 const glm::dvec3 kMessagePlace(0.0, 0.28, 1.0);
 constexpr double kMessageMetres = 0.8;
@@ -22,7 +23,10 @@ constexpr const char *kHands = "pictures of hands", *kArcs = "arcs", *kMessages 
 
 RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format)
     : troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
-    if (!troubles_.tryFor("rays, controllers and the vignette", [&] { makeSheet(session, context, format); })) { sheet_ = {}; }
+    if (!troubles_.tryFor("rays, controllers and the vignette",
+                          [&] { makeSheet(session, context, format); })) {
+        sheet_ = {};
+    }
     const auto make = [&](DrawnImage& image, const char* name, glm::uvec2 size_px) {
         image.images = xr::Swapchain(session, name, size_px, format, xr::ImageUse::kDraw);
         image.texels = Buffer(context, name, std::uint64_t{size_px.x} * size_px.y * sizeof(std::uint32_t));
@@ -59,7 +63,8 @@ void RoomThings::giveUp() {
 
 xr::LayerQuad RoomThings::quadOf(const Thing& thing) const {
     const SpritePlace place = placeOf(thing.sprite);
-    return {thing.strip.room_from_strip, thing.strip.size_m, &sheet_, place.from_px, place.size_px, false, nameOf(thing.sprite)};
+    return {thing.strip.room_from_strip, thing.strip.size_m, &sheet_, place.from_px, place.size_px, false,
+            nameOf(thing.sprite)};
 }
 
 void RoomThings::add(const Thing& thing) {
@@ -70,7 +75,8 @@ void RoomThings::darken(double darkness, double width_m) {
     if (darkness <= 0.0 || sheet_.handle() == XR_NULL_HANDLE) { return; }
     const SpritePlace place = placeOfShade(darkness);
     const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}};
-    vignette_ = xr::LayerQuad{ahead, glm::dvec2(width_m), &sheet_, place.from_px, place.size_px, /*follows_head*/ true, "the dark"};
+    vignette_ = xr::LayerQuad{ahead,         glm::dvec2(width_m),   &sheet_,   place.from_px,
+                              place.size_px, /*follows_head*/ true, "the dark"};
 }
 
 void RoomThings::choose(const RoomSight& sight) {
@@ -81,7 +87,9 @@ void RoomThings::choose(const RoomSight& sight) {
         vignette_ = quadOf({Sprite::kVignette, {ahead, glm::dvec2(*sight.vignette_m)}});
         vignette_->follows_head = true;
     }
-    for (std::size_t h = 0; sight.hands && h < 2; ++h) { chooseHand((*sight.hands)[h], hands_[h], sight.eye); }
+    for (std::size_t h = 0; sight.hands && h < 2; ++h) {
+        chooseHand((*sight.hands)[h], hands_[h], sight.eye);
+    }
     if (sight.arc != nullptr) { chooseArc(*sight.arc, sight.eye); }
     for (const Thing& thing : sight.things) { add(thing); }
     if (sight.has_message) { chooseMessage(sight.message); }
@@ -89,7 +97,9 @@ void RoomThings::choose(const RoomSight& sight) {
 
 void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
     if (picture && message_.texels.bytes() > 0) {
-        if (!troubles_.tryFor(kMessages, [&] { message_.now = message_.images.acquire(); })) { message_ = {}; }
+        if (!troubles_.tryFor(kMessages, [&] { message_.now = message_.images.acquire(); })) {
+            message_ = {};
+        }
         message_.picture = *picture;
     }
     if (message_.texels.bytes() == 0 || message_.picture.texels.empty()) { return; }
@@ -115,7 +125,10 @@ void RoomThings::chooseArc(const Arc& arc, const glm::dvec3& eye) {
     for (std::size_t i = 0; i < kArcPieces; ++i) {
         const auto& place = drawn.places[i];
         const glm::uvec2 from_px(static_cast<std::uint32_t>(i) * kArcPiecePx.x, 0);
-        if (place) { quads_.push_back({place->room_from_strip, place->size_m, &arc_.images, from_px, kArcPiecePx, false, "an arc"}); }
+        if (place) {
+            quads_.push_back(
+                {place->room_from_strip, place->size_m, &arc_.images, from_px, kArcPiecePx, false, "an arc"});
+        }
     }
 }
 
@@ -124,16 +137,19 @@ void RoomThings::chooseHand(const xr::Hand& hand, DrawnImage& image, const glm::
     if (has_picture && troubles_.tryFor(kHands, [&] { image.now = image.images.acquire(); })) {
         const Strip place = handPicturePlace(*hand.joints, eye);
         image.picture = drawHand(*hand.joints, place, eye, layout_);
-        quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx, false, "a hand"});
+        quads_.push_back(
+            {place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx, false, "a hand"});
         return;
     }
     if (has_picture) { image = {}; }  // no image was available
     if (hand.grip) {
         const auto along = [&](double metres) { return transform(*hand.grip, glm::dvec3(0.0, 0.0, metres)); };
         const Strip knob = facing(along(kHandleAheadMetres), glm::dvec2(kKnobMetres), eye);
-        const std::optional<Strip> handle = stripBetween(along(-kHandleBehindMetres), along(kHandleAheadMetres), kHandleWidthMetres, eye);
+        const std::optional<Strip> handle =
+            stripBetween(along(-kHandleBehindMetres), along(kHandleAheadMetres), kHandleWidthMetres, eye);
         // The farther one first.
-        const bool knob_is_behind = glm::distance(along(kHandleAheadMetres), eye) > glm::distance(along(-kHandleBehindMetres), eye);
+        const bool knob_is_behind =
+            glm::distance(along(kHandleAheadMetres), eye) > glm::distance(along(-kHandleBehindMetres), eye);
         if (knob_is_behind) { add({Sprite::kKnob, knob}); }
         if (handle) { add({Sprite::kHandle, *handle}); }
         if (!knob_is_behind) { add({Sprite::kKnob, knob}); }
@@ -148,14 +164,17 @@ void RoomThings::record(Commands& commands) {
             const std::size_t count = std::min(kTexelsOfUpdate, texels.size() - from);
             commands.update(image->texels, &texels[from], count * sizeof texels[0], from * sizeof texels[0]);
         }
-        commands.copyToImage(image->texels, image->now, image->picture.size_px, vk::ImageAspectFlagBits::eColor);
+        commands.copyToImage(image->texels, image->now, image->picture.size_px,
+                             vk::ImageAspectFlagBits::eColor);
     }
 }
 
 void RoomThings::release() {
     for (DrawnImage* image : drawnImages()) {
         const char* const what = image == &message_ ? kMessages : image == &arc_ ? kArcs : kHands;
-        if (!std::exchange(image->now, nullptr) || troubles_.tryFor(what, [&] { image->images.release(); })) { continue; }
+        if (!std::exchange(image->now, nullptr) || troubles_.tryFor(what, [&] { image->images.release(); })) {
+            continue;
+        }
         std::erase_if(quads_, [&](const xr::LayerQuad& quad) { return quad.swapchain == &image->images; });
         *image = {};
     }

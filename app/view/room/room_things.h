@@ -57,7 +57,9 @@ private:
         vk::Image now;         // of this frame; null: not acquired
         TexelPicture picture;  // of this frame
     };
-    [[nodiscard]] std::array<DrawnImage*, 4> drawnImages() { return {&hands_[kLeft], &hands_[kRight], &arc_, &message_}; }
+    [[nodiscard]] std::array<DrawnImage*, 4> drawnImages() {
+        return {&hands_[kLeft], &hands_[kRight], &arc_, &message_};
+    }
     void chooseMessage(const std::optional<TexelPicture>& picture);
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
     void chooseHand(const xr::Hand& hand, DrawnImage& image, const glm::dvec3& eye);

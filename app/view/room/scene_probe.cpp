@@ -22,7 +22,8 @@ constexpr double kThickMetres = 0.25, kThickShare = 0.15;
 }  // namespace
 
 double probeMetres(double point) {
-    return kNearestMetres * std::pow(kFarthestMetres / kNearestMetres, point / static_cast<double>(kProbePoints - 1));
+    return kNearestMetres *
+           std::pow(kFarthestMetres / kNearestMetres, point / static_cast<double>(kProbePoints - 1));
 }
 
 ProbePath probeRay(const Pose& room_from_aim) {
@@ -62,9 +63,11 @@ PathSeen followPath(const std::array<std::optional<double>, kProbePoints>& point
 }
 
 SceneProbe::Asked::Asked(const Context& context)
-    : found(context, "depth where hands point", kProbePaths * kProbePoints * kPointBytes, MemoryKind::kReadback) {}
+    : found(context, "depth where hands point", kProbePaths * kProbePoints * kPointBytes,
+            MemoryKind::kReadback) {}
 
-SceneProbe::SceneProbe(const Context& context) : asked_{Asked(context), Asked(context), Asked(context), Asked(context)} {}
+SceneProbe::SceneProbe(const Context& context)
+    : asked_{Asked(context), Asked(context), Asked(context), Asked(context)} {}
 
 void SceneProbe::forget() {
     for (Asked& asked : asked_) { asked.is_recorded = false; }
@@ -84,14 +87,16 @@ ProbesSeen SceneProbe::ask(const std::array<std::optional<ProbePath>, kProbePath
             if (points_m[i]) { seen_m[i] = depthIn(done, p * kProbePoints + i); }
             if (p != kGroundPath || !seen_m[i]) { continue; }
             const glm::dvec3& eye = done.scene_from_eye.position;
-            seen.ground.push_back(eye + *seen_m[i] / *points_m[i] * (transform(done.scene_from_room, (*done.paths[p])[i]) - eye));
+            seen.ground.push_back(eye + *seen_m[i] / *points_m[i] *
+                                            (transform(done.scene_from_room, (*done.paths[p])[i]) - eye));
         }
         if (p != kGroundPath) { seen.hands[p] = followPath(points_m, seen_m); }
     }
     return seen;
 }
 
-void SceneProbe::record(Commands& commands, const Picture& picture, const Eye& eye, const Similarity& scene_from_room) {
+void SceneProbe::record(Commands& commands, const Picture& picture, const Eye& eye,
+                        const Similarity& scene_from_room) {
     Asked& asked = asked_[turn_];
     asked.half_floats = picture.half_floats;
     asked.has_words = picture.words.bytes() > 0;
@@ -104,9 +109,11 @@ void SceneProbe::record(Commands& commands, const Picture& picture, const Eye& e
     for (std::size_t p = 0; p < asked.depths_m.size(); ++p) {
         const std::optional<ProbePath>& path = asked.paths[p / kProbePoints];
         if (!path) { continue; }
-        const glm::dvec3 at = transform(inverse(eye.world_from_camera), transform(scene_from_room, (*path)[p % kProbePoints]));
+        const glm::dvec3 at =
+            transform(inverse(eye.world_from_camera), transform(scene_from_room, (*path)[p % kProbePoints]));
         if (!isInPicture(eye, at)) { continue; }
-        const glm::uvec2 pixel(eye.intrinsics.fx * at.x / at.z + eye.intrinsics.cx, eye.intrinsics.fy * at.y / at.z + eye.intrinsics.cy);
+        const glm::uvec2 pixel(eye.intrinsics.fx * at.x / at.z + eye.intrinsics.cx,
+                               eye.intrinsics.fy * at.y / at.z + eye.intrinsics.cy);
         if (glm::any(glm::greaterThanEqual(pixel, picture.size_px))) { continue; }
         asked.depths_m[p] = at.z / scene_from_room.scale;
         const std::uint64_t index = std::uint64_t{pixel.y} * picture.size_px.x + pixel.x;
@@ -120,13 +127,15 @@ void SceneProbe::record(Commands& commands, const Picture& picture, const Eye& e
 }
 
 std::optional<double> SceneProbe::depthIn(const Asked& asked, std::size_t point) {
-    const auto words = asked.found.mapped<gpu::uint>().subspan(point * kPointBytes / sizeof(gpu::uint), kPointBytes / sizeof(gpu::uint));
+    const auto words = asked.found.mapped<gpu::uint>().subspan(point * kPointBytes / sizeof(gpu::uint),
+                                                               kPointBytes / sizeof(gpu::uint));
     const float alpha = asked.half_floats ? glm::unpackHalf2x16(words[1]).y : std::bit_cast<float>(words[3]);
     const gpu::uint word = words[kDepthByte / sizeof(gpu::uint)];
     if (alpha < 0.5f || word == 0) { return std::nullopt; }
     // See lib/moving_pixel.glsl.
-    const double units = asked.has_words ? 1.0 / static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5))
-                                         : static_cast<double>(std::bit_cast<float>(word)) / static_cast<double>(alpha);
+    const double units = asked.has_words
+                             ? 1.0 / static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5))
+                             : static_cast<double>(std::bit_cast<float>(word)) / static_cast<double>(alpha);
     return units / asked.scene_from_room.scale;
 }
 

@@ -53,7 +53,8 @@ public:
     void forget();
     // Within the frame's commands, after its pictures; may be repeated. The scene is `scene_from_room`, the
     // picture that of `eye`. Pictures without depth tell nothing.
-    void record(Commands& commands, const Picture& picture, const Eye& eye, const Similarity& scene_from_room);
+    void record(Commands& commands, const Picture& picture, const Eye& eye,
+                const Similarity& scene_from_room);
 
 private:
     struct Asked {

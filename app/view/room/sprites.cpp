@@ -56,21 +56,27 @@ Texel draw(Sprite sprite, const glm::dvec2& at) {
             return {kRayLight, rise(0.5, 0.62, radius) * (1.0 - rise(0.84, 0.98, radius))};
         case Sprite::kTarget:
         case Sprite::kBlocked: {
-            const double ring = rise(0.72, 0.78, radius) * (1.0 - rise(0.92, 1.0, radius)), dot = 1.0 - rise(0.12, 0.2, radius);
+            const double ring = rise(0.72, 0.78, radius) * (1.0 - rise(0.92, 1.0, radius)),
+                         dot = 1.0 - rise(0.12, 0.2, radius);
             return {sprite == Sprite::kTarget ? kTargetLight : kBlockedLight,
                     std::max({ring, dot, 0.25 * (1.0 - rise(0.72, 0.78, radius))})};
         }
         case Sprite::kShade:
-            return {glm::dvec3(0.0), std::clamp(std::ceil(0.5 * (at.x + 1.0) * kShades), 1.0, double{kShades}) / kShades};
+            return {glm::dvec3(0.0),
+                    std::clamp(std::ceil(0.5 * (at.x + 1.0) * kShades), 1.0, double{kShades}) / kShades};
         case Sprite::kVignette:
             return {glm::dvec3(0.0), kVignetteAlpha * rise(kVignetteClear, kVignetteDark, radius)};
     }
     return {};
 }
 
-double encode(double light) { return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055; }
+double encode(double light) {
+    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
+}
 
-std::uint32_t byteOf(double value) { return static_cast<std::uint32_t>(std::clamp(value, 0.0, 1.0) * 255.0 + 0.5); }
+std::uint32_t byteOf(double value) {
+    return static_cast<std::uint32_t>(std::clamp(value, 0.0, 1.0) * 255.0 + 0.5);
+}
 
 }  // namespace
 
@@ -110,7 +116,8 @@ const char* nameOf(Sprite sprite) {
 }
 
 SpritePlace placeOfShade(double darkness) {
-    const auto shade = static_cast<unsigned>(std::clamp(std::ceil(kShades * darkness), 1.0, double{kShades})) - 1;
+    const auto shade =
+        static_cast<unsigned>(std::clamp(std::ceil(kShades * darkness), 1.0, double{kShades})) - 1;
     // Its middle: beside it lies another one.
     return {placeOf(Sprite::kShade).from_px + glm::uvec2(shade * kShadePx + 2, 2), glm::uvec2(kShadePx - 4)};
 }
@@ -132,17 +139,22 @@ std::uint32_t texelOf(const glm::dvec3& light, double alpha, const TexelLayout& 
 
 TexelPicture drawSprites(const TexelLayout& layout) {
     TexelPicture sheet{kSheetPx, std::vector<std::uint32_t>(std::size_t{kSheetPx.x} * kSheetPx.y, 0)};
-    for (const Sprite sprite : {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kBlocked,
-                                Sprite::kRing, Sprite::kVignette, Sprite::kShade}) {
+    for (const Sprite sprite :
+         {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kBlocked,
+          Sprite::kRing, Sprite::kVignette, Sprite::kShade}) {
         const SpritePlace place = placeOf(sprite);
         // The picture is continued into a rim around it.
-        const glm::uvec2 low = place.from_px - glm::min(kRimPx, place.from_px), high = place.from_px + place.size_px + kRimPx;
+        const glm::uvec2 low = place.from_px - glm::min(kRimPx, place.from_px),
+                         high = place.from_px + place.size_px + kRimPx;
         for (std::uint32_t y = low.y; y < std::min(high.y, kSheetPx.y); ++y) {
             for (std::uint32_t x = low.x; x < std::min(high.x, kSheetPx.x); ++x) {
-                const glm::dvec2 at = 2.0 * (glm::dvec2(x + 0.5, y + 0.5) - glm::dvec2(place.from_px)) / glm::dvec2(place.size_px) - 1.0;
+                const glm::dvec2 at = 2.0 * (glm::dvec2(x + 0.5, y + 0.5) - glm::dvec2(place.from_px)) /
+                                          glm::dvec2(place.size_px) -
+                                      1.0;
                 const Texel texel = draw(sprite, at);
                 std::uint32_t& target = sheet.texels[std::size_t{y} * kSheetPx.x + x];
-                const bool is_inside = x >= place.from_px.x && y >= place.from_px.y && x < place.from_px.x + place.size_px.x &&
+                const bool is_inside = x >= place.from_px.x && y >= place.from_px.y &&
+                                       x < place.from_px.x + place.size_px.x &&
                                        y < place.from_px.y + place.size_px.y;
                 if (is_inside || target == 0) { target = texelOf(texel.light, texel.alpha, layout); }
             }

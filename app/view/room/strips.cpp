@@ -10,7 +10,8 @@ const glm::dvec3 kUpwards(0.0, -1.0, 0.0), kForwards(0.0, 0.0, 1.0);
 
 }  // namespace
 
-std::optional<Strip> stripBetween(const glm::dvec3& from, const glm::dvec3& to, double width_m, const glm::dvec3& eye) {
+std::optional<Strip> stripBetween(const glm::dvec3& from, const glm::dvec3& to, double width_m,
+                                  const glm::dvec3& eye) {
     const double length_m = glm::length(to - from);
     if (length_m < kLeastMetres) { return std::nullopt; }
     const glm::dvec3 along = (to - from) / length_m, middle = 0.5 * (from + to);
@@ -30,6 +31,8 @@ Strip facing(const glm::dvec3& middle, const glm::dvec2& size_m, const glm::dvec
     return {lookAt(middle, middle + away, is_steep ? kForwards : kUpwards), size_m};
 }
 
-Strip lying(const glm::dvec3& middle, double width_m) { return {lookAt(middle, middle - kUpwards, kForwards), glm::dvec2(width_m)}; }
+Strip lying(const glm::dvec3& middle, double width_m) {
+    return {lookAt(middle, middle - kUpwards, kForwards), glm::dvec2(width_m)};
+}
 
 }  // namespace binosplat

@@ -16,7 +16,8 @@ struct Strip {
 
 // From `from`, the picture's top, to `to`, `width_m` wide, turned about its length towards `eye`. Empty if
 // that is undefined: the ends coincide, or the eye looks along it.
-std::optional<Strip> stripBetween(const glm::dvec3& from, const glm::dvec3& to, double width_m, const glm::dvec3& eye);
+std::optional<Strip> stripBetween(const glm::dvec3& from, const glm::dvec3& to, double width_m,
+                                  const glm::dvec3& eye);
 
 // Faces `eye`, upright if possible.
 Strip facing(const glm::dvec3& middle, const glm::dvec2& size_m, const glm::dvec3& eye);

@@ -25,9 +25,10 @@ double halfWidthSeen(const std::array<xr::EyeView, 2>& views) {
         const ViewAngles angles = xr::fromXr(views[e].fov);
         for (const double x_rad : {angles.left_rad, angles.right_rad}) {
             for (const double y_rad : {angles.up_rad, angles.down_rad}) {
-                const glm::dvec3 corner =
-                    glm::normalize(head_from_room * room_from_eyes[e].orientation * glm::dvec3(std::tan(x_rad), -std::tan(y_rad), 1.0));
-                widest = std::max(widest, std::max(std::abs(corner.x), std::abs(corner.y)) / std::max(corner.z, kLeastCosine));
+                const glm::dvec3 corner = glm::normalize(head_from_room * room_from_eyes[e].orientation *
+                                                         glm::dvec3(std::tan(x_rad), -std::tan(y_rad), 1.0));
+                widest = std::max(widest, std::max(std::abs(corner.x), std::abs(corner.y)) /
+                                              std::max(corner.z, kLeastCosine));
             }
         }
     }
@@ -36,10 +37,13 @@ double halfWidthSeen(const std::array<xr::EyeView, 2>& views) {
 
 }  // namespace
 
-double coverMetres(const std::array<xr::EyeView, 2>& views) { return 2.0 * kVignetteMetres * kMargin * halfWidthSeen(views); }
+double coverMetres(const std::array<xr::EyeView, 2>& views) {
+    return 2.0 * kVignetteMetres * kMargin * halfWidthSeen(views);
+}
 
 void Vignette::update(bool moves, double step_seconds) {
-    closed_ = std::clamp(closed_ + (moves ? step_seconds / kClosesInSeconds : -step_seconds / kOpensInSeconds), 0.0, 1.0);
+    closed_ = std::clamp(
+        closed_ + (moves ? step_seconds / kClosesInSeconds : -step_seconds / kOpensInSeconds), 0.0, 1.0);
 }
 
 std::optional<double> Vignette::widthMetres(const std::array<xr::EyeView, 2>& views) const {

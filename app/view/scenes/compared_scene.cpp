@@ -14,7 +14,8 @@ std::string ShownScene::toggleComparison() {
         return fmt::format("{} is no longer compared with", was);
     }
     compares_next_ = !compares_next_ && shown_.scene;
-    return compares_next_ ? fmt::format("choose, open or drop a scene to compare with {}", shown_.scene->name) : "nothing is compared";
+    return compares_next_ ? fmt::format("choose, open or drop a scene to compare with {}", shown_.scene->name)
+                          : "nothing is compared";
 }
 
 void ShownScene::beginOther(const std::string& scene) {
@@ -24,7 +25,8 @@ void ShownScene::beginOther(const std::string& scene) {
     RunOptions run = options_.run;  // a given place belongs to the first one
     run.camera.cameras_file.clear();
     run.camera.eye = run.camera.look = run.camera.up = std::nullopt;
-    other_loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
+    other_loader_ =
+        std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
 }
 
 void ShownScene::dropOther() {
@@ -60,11 +62,12 @@ std::string ShownScene::goOnAlone(const Error& error) {
     dropOther();
     const auto* const of_device = dynamic_cast<const DeviceError*>(&error);
     if (of_device == nullptr || of_device->kind() != DeviceError::Kind::kMemory) { return error.what(); }
-    return fmt::format("{} and {} do not fit into the device's memory together: the first one stays", shown_.scene->name, other_name_);
+    return fmt::format("{} and {} do not fit into the device's memory together: the first one stays",
+                       shown_.scene->name, other_name_);
 }
 
-void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes,
-                           const FrameSettings& inset) {
+void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame,
+                           std::span<const Eye> inset_eyes, const FrameSettings& inset) {
     if (!other_.scene || draws_other_) { return; }
     const glm::uvec3 shape(eyes.front().size_px, frame.hidden_tiles[0].size());
     if (std::exchange(other_.met, shape) == shape) { return; }
@@ -94,13 +97,17 @@ Similarity ShownScene::drawnFrom(Similarity scene_from_room) const {
 }
 
 std::vector<Eye> ShownScene::seenFromDrawn(std::vector<Eye> eyes) const {
-    for (Eye& eye : eyes) { eye.world_from_camera.position += draws_other_ ? otherFromShown() : glm::dvec3(0.0); }
+    for (Eye& eye : eyes) {
+        eye.world_from_camera.position += draws_other_ ? otherFromShown() : glm::dvec3(0.0);
+    }
     return eyes;
 }
 
 std::vector<Eye> ShownScene::seenFromResting(std::span<const Eye> eyes) const {
     std::vector<Eye> there(eyes.begin(), eyes.end());
-    for (Eye& eye : there) { eye.world_from_camera.position += (draws_other_ ? -1.0 : 1.0) * otherFromShown(); }
+    for (Eye& eye : there) {
+        eye.world_from_camera.position += (draws_other_ ? -1.0 : 1.0) * otherFromShown();
+    }
     return there;
 }
 

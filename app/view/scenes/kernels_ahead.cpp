@@ -20,7 +20,9 @@ std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     middle.size_px = {width_px, 16};  // kernels depend only on a picture's width
     middle.intrinsics = intrinsicsFromFovX(1.5, middle.size_px);
     std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
-    if (canted) { eyes[kRight].world_from_camera.orientation = glm::angleAxis(0.1, glm::dvec3(0.0, 1.0, 0.0)); }
+    if (canted) {
+        eyes[kRight].world_from_camera.orientation = glm::angleAxis(0.1, glm::dvec3(0.0, 1.0, 0.0));
+    }
     return eyes;
 }
 
@@ -29,7 +31,8 @@ std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     std::vector<std::uint32_t> widths, steps;
     for (const double share : kShares) {
         const auto width = std::max(static_cast<std::uint32_t>(share * width_px), 16u);
-        const std::uint32_t its = std::min((width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep, gpu::kMostRowSteps + 1);
+        const std::uint32_t its =
+            std::min((width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep, gpu::kMostRowSteps + 1);
         if (std::ranges::find(steps, its) != steps.end()) { continue; }
         steps.push_back(its);
         widths.push_back(width);
@@ -54,8 +57,8 @@ void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<
     small.makeKernels(seen, other);
 }
 
-void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptions& camera, const FramesAhead& ahead,
-                   const std::function<void()>& between) {
+void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptions& camera,
+                   const FramesAhead& ahead, const std::function<void()>& between) {
     const glm::uvec2 tiles = tilesOf({width_px, 16});
     std::vector<std::uint8_t> hidden(std::size_t{tiles.x} * tiles.y, 0);
     hidden[0] = 1;
@@ -89,16 +92,21 @@ bool FramesAhead::isLike(const FramesAhead& other) const {
            withoutNumbers(stereo) == withoutNumbers(other.stereo);
 }
 
-std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
-                                              const FramesAhead& ahead, const std::function<void()>& between) {
-    auto small = std::make_unique<StereoFrame>(context, scene, FrameOptions{.first_capacity = {1, 1}, .threads_per_cell = 0});
+std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene,
+                                              const CameraOptions& camera, const FramesAhead& ahead,
+                                              const std::function<void()>& between) {
+    auto small = std::make_unique<StereoFrame>(context, scene,
+                                               FrameOptions{.first_capacity = {1, 1}, .threads_per_cell = 0});
     try {
-        for (const std::uint32_t width : widthsOf(ahead.size_px.x)) { makeKernelsAt(width, *small, camera, ahead, between); }
+        for (const std::uint32_t width : widthsOf(ahead.size_px.x)) {
+            makeKernelsAt(width, *small, camera, ahead, between);
+        }
     } catch (const Error&) {}  // reported when a frame needs it
     return small;
 }
 
-KernelMaker::KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead)
+KernelMaker::KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera,
+                         FramesAhead ahead)
     : ahead_(std::move(ahead)), thread_([this, &context, &scene, where = std::move(camera)] {
           struct Cancelled {};
           try {

@@ -29,8 +29,9 @@ struct FramesAhead {
 // StereoFrame::takeKernels: those of the chosen method, with and without hidden tiles and foveation, with
 // parallel and canted eyes. Takes as long as the driver needs; `between` is called now and then and may
 // throw.
-std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
-                                              const FramesAhead& ahead, const std::function<void()>& between);
+std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene,
+                                              const CameraOptions& camera, const FramesAhead& ahead,
+                                              const std::function<void()>& between);
 
 // The same on a thread of its own, for a scene that is shown.
 class KernelMaker {

@@ -34,7 +34,8 @@ Image unpack(const std::vector<gpu::uint>& words, glm::uvec2 size_px, bool half_
 
 }  // namespace
 
-PictureCopy::PictureCopy(const Context& context) : rows_(context, "rows of a picture", kBytes, MemoryKind::kReadback) {}
+PictureCopy::PictureCopy(const Context& context)
+    : rows_(context, "rows of a picture", kBytes, MemoryKind::kReadback) {}
 
 bool PictureCopy::ask() {
     if (frames_++ == 0) { is_recorded_ = false; }
@@ -45,9 +46,12 @@ bool PictureCopy::ask() {
 
 void PictureCopy::record(Commands& commands, const Picture& picture, const Eye& eye, const Eye& view) {
     if (!isAsked()) { return; }
-    const std::uint64_t row_bytes = std::uint64_t{picture.size_px.x} * (picture.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4));
-    const auto most_rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBytes / row_bytes, picture.size_px.y));
-    const std::uint32_t step = (picture.size_px.y + most_rows - 1) / most_rows, rows = picture.size_px.y / step;
+    const std::uint64_t row_bytes =
+        std::uint64_t{picture.size_px.x} * (picture.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4));
+    const auto most_rows =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(kBytes / row_bytes, picture.size_px.y));
+    const std::uint32_t step = (picture.size_px.y + most_rows - 1) / most_rows,
+                        rows = picture.size_px.y / step;
     std::vector<vk::BufferCopy> parts;
     for (std::uint32_t row = 0; row < rows; ++row) {
         parts.emplace_back(row_bytes * (std::uint64_t{row} * step + step / 2), row_bytes * row, row_bytes);
@@ -65,7 +69,8 @@ void PictureCopy::record(Commands& commands, const Picture& picture, const Eye& 
 
 std::function<Image()> PictureCopy::take() {
     if (!std::exchange(is_recorded_, false)) { return {}; }
-    const auto words = rows_.mapped<gpu::uint>().first(std::size_t{eye_.size_px.x} * eye_.size_px.y * (half_floats_ ? 2 : 4));
+    const auto words = rows_.mapped<gpu::uint>().first(std::size_t{eye_.size_px.x} * eye_.size_px.y *
+                                                       (half_floats_ ? 2 : 4));
     return [words = std::vector(words.begin(), words.end()), eye = eye_, view = view_, half = half_floats_] {
         return showTurned(unpack(words, eye.size_px, half), eye, view);
     };

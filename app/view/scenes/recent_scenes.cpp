@@ -70,7 +70,8 @@ void toggleFavourite(const std::string& scene) {
 
 void rememberScene(const std::string& scene) {
     std::error_code error;
-    const std::string whole = isBuiltin(scene) || isAddress(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
+    const std::string whole =
+        isBuiltin(scene) || isAddress(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
     check(!error, "{}: cannot be added to the recent scenes: the working directory no longer exists", scene);
     if (whole.find('\n') != std::string::npos) { return; }  // it would be two lines
     const std::vector<std::string> before = recentScenes(), after = withLatest(before, whole);

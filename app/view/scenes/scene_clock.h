@@ -31,7 +31,8 @@ public:
     void step(std::ptrdiff_t frames) {
         plays_ = false;
         const auto count = static_cast<std::ptrdiff_t>(frames_);
-        goTo(static_cast<std::size_t>(((static_cast<std::ptrdiff_t>(frame()) + frames) % count + count) % count));
+        goTo(static_cast<std::size_t>(((static_cast<std::ptrdiff_t>(frame()) + frames) % count + count) %
+                                      count));
     }
     // Plays on from there, or stays paused there.
     void goTo(std::size_t frame) { time_s_ = static_cast<double>(std::min(frame, frames_ - 1)) / rate_hz_; }

@@ -23,7 +23,8 @@ std::uint64_t bytesOnDisk(const fs::path& place) {
         return error ? 0 : bytes;
     }
     std::uint64_t sum = 0;
-    for (fs::recursive_directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
+    for (fs::recursive_directory_iterator entry(place, error), end; !error && entry != end;
+         entry.increment(error)) {
         std::error_code ignored;
         if (entry->is_regular_file(ignored)) { sum += entry->file_size(ignored); }
     }
@@ -71,11 +72,16 @@ SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string
     return facts;
 }
 
-std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts, double metres_per_unit) {
+std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts,
+                                                               double metres_per_unit) {
     std::string splats = inThousands(facts.splats);
-    if (facts.left_out > 0) { splats += fmt::format(", {} broken ones left out", inThousands(facts.left_out)); }
+    if (facts.left_out > 0) {
+        splats += fmt::format(", {} broken ones left out", inThousands(facts.left_out));
+    }
     std::string colours = fmt::format("degree {}", facts.sh_degree);
-    if (facts.sh_degree_in_file > facts.sh_degree) { colours += fmt::format(", {} in the file", facts.sh_degree_in_file); }
+    if (facts.sh_degree_in_file > facts.sh_degree) {
+        colours += fmt::format(", {} in the file", facts.sh_degree_in_file);
+    }
     return {{"Splats", splats},
             {"Kind", facts.kind},
             {"Colours (SH)", colours},

@@ -31,6 +31,7 @@ std::string inMib(std::uint64_t bytes);
 std::string describeBriefly(const SceneFacts& facts);
 
 // Names and values. `metres_per_unit` is the wearer's current scale.
-std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts, double metres_per_unit);
+std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts,
+                                                               double metres_per_unit);
 
 }  // namespace binosplat

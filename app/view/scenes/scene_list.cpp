@@ -42,7 +42,8 @@ SceneList listBuiltinScenes() {
 SceneList listDrives(const std::vector<fs::path>& roots) {
     SceneList list{"Drives", {}, {}, {}};
     for (const fs::path& root : roots) {
-        list.entries.push_back({(root.has_root_name() ? root.root_name() : root).string(), root.string(), true, {}});
+        list.entries.push_back(
+            {(root.has_root_name() ? root.root_name() : root).string(), root.string(), true, {}});
     }
     return list;
 }
@@ -64,13 +65,19 @@ SceneList listFolder(const std::string& folder, const std::vector<fs::path>& roo
     if (folder == kBuiltinFolder) { return listBuiltinScenes(); }
     if (folder == kDrives) { return listDrives(roots); }
     const fs::path whole = wholePath(folder);
-    SceneList list{whole.string(), whole.has_relative_path() ? whole.parent_path().string() : roots.size() > 1 ? kDrives : "", {}, {}};
+    SceneList list{whole.string(),
+                   whole.has_relative_path() ? whole.parent_path().string()
+                   : roots.size() > 1        ? kDrives
+                                             : "",
+                   {},
+                   {}};
     std::error_code error;
     for (fs::directory_iterator entry(whole, error), end; !error && entry != end; entry.increment(error)) {
         const fs::path& place = entry->path();
         const std::string name = place.filename().string();
         std::error_code ignored;
-        const bool is_scene = looksLikeScene(place), is_folder = !is_scene && fs::is_directory(place, ignored);
+        const bool is_scene = looksLikeScene(place),
+                   is_folder = !is_scene && fs::is_directory(place, ignored);
         if (name.starts_with('.') || (!is_scene && !is_folder)) { continue; }
         list.entries.push_back({name, place.string(), is_folder, troubleOf(place)});
     }
@@ -90,8 +97,12 @@ void describeScenes(SceneList& list) {
         entry.picture = std::move(seen.picture);
         entry.about = std::move(seen.about);
         std::error_code error;
-        if (!entry.about.empty() || isBuiltin(entry.place) || !fs::is_regular_file(entry.place, error)) { continue; }
-        if (const std::uintmax_t bytes = fs::file_size(entry.place, error); !error) { entry.about = inMib(bytes); }
+        if (!entry.about.empty() || isBuiltin(entry.place) || !fs::is_regular_file(entry.place, error)) {
+            continue;
+        }
+        if (const std::uintmax_t bytes = fs::file_size(entry.place, error); !error) {
+            entry.about = inMib(bytes);
+        }
     }
     std::ranges::stable_partition(list.entries, &SceneEntry::is_favourite);
 }
@@ -100,7 +111,8 @@ SceneList listScenes(const std::string& title, const std::vector<std::string>& s
     SceneList list{title, {}, {}, {}};
     for (const std::string& scene : scenes) {
         const bool on_disk = !isBuiltin(scene) && !isAddress(scene);
-        list.entries.push_back({on_disk ? wholePath(scene).filename().string() : scene, scene, false, on_disk ? troubleOf(scene) : ""});
+        list.entries.push_back({on_disk ? wholePath(scene).filename().string() : scene, scene, false,
+                                on_disk ? troubleOf(scene) : ""});
     }
     return list;
 }

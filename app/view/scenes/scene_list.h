@@ -37,7 +37,8 @@ std::string folderOf(const std::string& scene);
 inline constexpr const char* kDrives = "drives:";
 
 // Folders first, then scenes; hidden files and files that do not look like scenes are left out.
-SceneList listFolder(const std::string& folder, const std::vector<std::filesystem::path>& roots = fileSystemRoots());
+SceneList listFolder(const std::string& folder,
+                     const std::vector<std::filesystem::path>& roots = fileSystemRoots());
 
 // Adds what is known about the scenes, and puts favourites first.
 void describeScenes(SceneList& list);

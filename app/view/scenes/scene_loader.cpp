@@ -24,7 +24,8 @@ struct Cancelled {};
 // The eye of a standing person, with about a headset's view angle.
 Eye startEye(const View& start) {
     constexpr glm::uvec2 kSizePx(1024, 1024);
-    return {lookAt(start.eye, start.look, start.up), intrinsicsFromFovX(glm::radians(100.0), kSizePx), kSizePx};
+    return {lookAt(start.eye, start.look, start.up), intrinsicsFromFovX(glm::radians(100.0), kSizePx),
+            kSizePx};
 }
 
 // Facts about the whole scene, not its coarsest level.
@@ -42,7 +43,9 @@ std::string placeOf(const std::string& scene) {
     return error ? scene : whole.string();
 }
 
-std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) { return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()}; }
+std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) {
+    return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()};
+}
 
 void LoadedScene::follow(std::span<const Eye> eyes, double step_seconds) {
     if (!live) { return; }
@@ -56,14 +59,16 @@ std::string LoadedScene::moveTime(bool play, int step, std::optional<std::size_t
     if (play) { clock.togglePlaying(); }
     if (step != 0) { clock.step(step); }
     if (frame) { clock.goTo(*frame); }
-    return fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "paused at", clock.frame() + 1, clock.frameCount());
+    return fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "paused at", clock.frame() + 1,
+                       clock.frameCount());
 }
 
 void LoadedScene::count(FrameCounters& counters) const {
     if (live) { counters.streaming = streamingOf(*live); }
 }
 
-SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead, bool settled)
+SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options,
+                         std::optional<FramesAhead> ahead, bool settled)
     : scene_(std::move(scene)),
       ahead_(std::move(ahead)),
       thread_([this, &context, run = std::move(options), settled] { load(context, run, settled); }) {}
@@ -93,9 +98,12 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
             progress_ = kReadingShare * share;
         };
         std::optional<OpenedScene> opened;
-        if (mayLive(scene_, options.load)) { opened = openLive(context, scene_, options, StreamFor::kFrames, reading); }
+        if (mayLive(scene_, options.load)) {
+            opened = openLive(context, scene_, options, StreamFor::kFrames, reading);
+        }
         if (opened) { notes = std::move(opened->notes); }
-        Scene scene = opened ? std::move(opened->sample) : loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
+        Scene scene = opened ? std::move(opened->sample)
+                             : loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
         reading(1.0);
         const View start = startView(scene, options.camera, options.metres_per_unit);
         SceneFacts facts = factsOf(scene, notes, scene_);
@@ -124,7 +132,8 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
             loaded_->measured = remembered.metres_per_unit;
             if (loaded_->remembered) { loaded_->remembered->position -= scene.origin; }
         } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
-        const bool is_asked_for = options.camera.eye || options.camera.look || !options.camera.cameras_file.empty();
+        const bool is_asked_for =
+            options.camera.eye || options.camera.look || !options.camera.cameras_file.empty();
         const double growth = is_asked_for ? 1.0 : growthToSee(start, options.metres_per_unit);
         loaded_->start_view = start;
         loaded_->start = startPlacement(start, growth * options.metres_per_unit);
@@ -149,9 +158,10 @@ void SceneLoader::makeKernels(const Context& context, const RunOptions& options)
             made_for_ = ahead_;
         }
         if (made_for_->known.contains(kindOf(*loaded_))) { continue; }
-        std::unique_ptr<StereoFrame> made = makeKernelsAhead(context, loaded_->gpu_scene, options.camera, *made_for_, [this] {
-            if (cancelled_) { throw Cancelled(); }
-        });
+        std::unique_ptr<StereoFrame> made =
+            makeKernelsAhead(context, loaded_->gpu_scene, options.camera, *made_for_, [this] {
+                if (cancelled_) { throw Cancelled(); }
+            });
         if (loaded_->kernels) { made->takeKernels(*loaded_->kernels); }
         loaded_->kernels = std::move(made);
     }

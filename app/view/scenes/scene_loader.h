@@ -24,7 +24,10 @@ struct LoadedScene {
     LoadedScene(const Context& context, const Scene& scene, const Progress& progress)
         : whole(std::make_unique<GpuScene>(context, scene, progress)), gpu_scene(*whole) {}
     explicit LoadedScene(OpenedScene opened)
-        : live(std::move(opened.live)), stream(opened.stream), moving(opened.moving), gpu_scene(live->scene()) {
+        : live(std::move(opened.live)),
+          stream(opened.stream),
+          moving(opened.moving),
+          gpu_scene(live->scene()) {
         if (moving != nullptr) { clock = {moving->rateHz(), moving->series().size()}; }
     }
     // Before a frame of these eyes: requests what they need, and moves a moving scene on. Never waits.
@@ -70,7 +73,8 @@ public:
     // With `ahead` it also makes the kernels for the scene's frames, unless scenes of its kind were shown
     // before. A streamed scene is done when the coarsest level of all its leaves is loaded or, if `settled`,
     // everything that the start view needs.
-    SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead = {}, bool settled = false);
+    SceneLoader(const Context& context, std::string scene, RunOptions options,
+                std::optional<FramesAhead> ahead = {}, bool settled = false);
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
     // Gives up if it can, and waits for the rest.

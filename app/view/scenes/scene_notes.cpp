@@ -58,21 +58,24 @@ void SceneNotes::toggleFavourite(const std::string& scene, std::function<void()>
 
 void SceneNotes::keepPicture(const LoadedScene& scene, std::function<Image()> view) {
     files_.write("keeping a picture of the scene",
-                 [name = scene.name, about = describeBriefly(scene.facts), view = std::move(view)]() -> FileWorker::Done {
+                 [name = scene.name, about = describeBriefly(scene.facts),
+                  view = std::move(view)]() -> FileWorker::Done {
                      keepSeenScene(name, makeScenePicture(view()), about);
                      return {};
                  });
 }
 
 void SceneNotes::openLast(const LoadedScene& now, std::function<void(const std::string&)> open) {
-    files_.read("the scene shown last", [this, place = now.place, open = std::move(open)]() -> FileWorker::Done {
-        const std::vector<std::string> recent = recentScenes();
-        const auto last = std::ranges::find_if(recent, [&](const std::string& scene) { return placeOf(scene) != place; });
-        if (last == recent.end()) {
-            return [this] { say_("no other scene has been shown yet"); };
-        }
-        return [open, scene = *last] { open(scene); };
-    });
+    files_.read("the scene shown last",
+                [this, place = now.place, open = std::move(open)]() -> FileWorker::Done {
+                    const std::vector<std::string> recent = recentScenes();
+                    const auto last = std::ranges::find_if(
+                        recent, [&](const std::string& scene) { return placeOf(scene) != place; });
+                    if (last == recent.end()) {
+                        return [this] { say_("no other scene has been shown yet"); };
+                    }
+                    return [open, scene = *last] { open(scene); };
+                });
 }
 
 }  // namespace binosplat

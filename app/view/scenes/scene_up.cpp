@@ -21,7 +21,9 @@ constexpr double kMostMedians = 4.0;
 
 glm::dvec3 upOfFloor(const Scene& scene, const glm::dvec3& usual) {
     const std::size_t step = scene.size() / kMostSplats + 1;
-    const auto areaOf = [&](std::size_t i) { return static_cast<double>(scene.scales[i].x) * static_cast<double>(scene.scales[i].y); };
+    const auto areaOf = [&](std::size_t i) {
+        return static_cast<double>(scene.scales[i].x) * static_cast<double>(scene.scales[i].y);
+    };
     std::vector<double> areas;
     for (std::size_t i = 0; i < scene.size(); i += step) { areas.push_back(areaOf(i)); }
     if (areas.empty()) { return glm::normalize(usual); }
@@ -35,7 +37,8 @@ glm::dvec3 upOfFloor(const Scene& scene, const glm::dvec3& usual) {
             const glm::dvec3 normal = glm::dquat(scene.rotations[i]) * glm::dvec3(0.0, 0.0, 1.0);
             const double cosine = glm::dot(normal, up);
             if (!(std::abs(cosine) >= least_cosine)) { continue; }
-            const double weight = static_cast<double>(scene.opacities[i]) * std::min(areaOf(i), kMostMedians * *median);
+            const double weight =
+                static_cast<double>(scene.opacities[i]) * std::min(areaOf(i), kMostMedians * *median);
             sum += std::copysign(weight, cosine) * normal;
         }
         const double length = glm::length(sum);
@@ -47,7 +50,9 @@ glm::dvec3 upOfFloor(const Scene& scene, const glm::dvec3& usual) {
 
 glm::dvec3 upOfScene(const Scene& scene, const std::filesystem::path& source, const glm::dvec3& usual) {
     if (isBuiltin(scene.name)) { return glm::normalize(usual); }
-    if (const auto found = upOfCameras(readSceneCameras(source, scene.origin).cameras, scene)) { return found->up; }
+    if (const auto found = upOfCameras(readSceneCameras(source, scene.origin).cameras, scene)) {
+        return found->up;
+    }
     return upOfFloor(scene, usual);
 }
 

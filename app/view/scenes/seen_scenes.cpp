@@ -25,20 +25,24 @@ Image makeScenePicture(const Image& view) {
                 const auto from = static_cast<std::size_t>(std::max(low[axis] + shrink * at, 0.0));
                 const auto to = static_cast<std::size_t>(low[axis] + shrink * (at + 1));
                 const std::size_t most = view.size_px[axis];
-                return std::pair(std::min(from, most - 1), std::clamp(to, std::min(from, most - 1) + 1, most));
+                return std::pair(std::min(from, most - 1),
+                                 std::clamp(to, std::min(from, most - 1) + 1, most));
             };
             const auto [left, right] = rangeOf(x, 0);
             const auto [top, bottom] = rangeOf(y, 1);
             glm::dvec3 sum(0.0);
             for (std::size_t j = top; j < bottom; ++j) {
                 for (std::size_t i = left; i < right; ++i) {
-                    const float* pixel = view.values.data() + (j * view.size_px.x + i) * static_cast<std::size_t>(view.channels);
+                    const float* pixel = view.values.data() +
+                                         (j * view.size_px.x + i) * static_cast<std::size_t>(view.channels);
                     sum += glm::dvec3(pixel[0], pixel[1], pixel[2]);
                 }
             }
             sum /= static_cast<double>((right - left) * (bottom - top));
             for (int channel = 0; channel < 3; ++channel) {
-                small.values.push_back(std::isfinite(sum[channel]) ? static_cast<float>(std::clamp(sum[channel], 0.0, 1.0)) : 0.0f);
+                small.values.push_back(std::isfinite(sum[channel])
+                                           ? static_cast<float>(std::clamp(sum[channel], 0.0, 1.0))
+                                           : 0.0f);
             }
         }
     }
@@ -58,7 +62,8 @@ void keepSeenScene(const std::string& scene, const Image& picture, const std::st
 SeenScene findSeenScene(const std::string& scene) {
     SeenScene seen;
     try {
-        const std::string stem = viewFileStem(scene).string(), file = stem + extensionOf(PictureKind::kDisplay);
+        const std::string stem = viewFileStem(scene).string(),
+                          file = stem + extensionOf(PictureKind::kDisplay);
         std::error_code error;
         const auto written = std::filesystem::last_write_time(file, error);
         if (error) { return seen; }
@@ -71,7 +76,8 @@ SeenScene findSeenScene(const std::string& scene) {
         for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
             const float* pixel = picture.values.data() + i * static_cast<std::size_t>(picture.channels);
             for (int channel = 0; channel < 3; ++channel) {
-                seen.picture.rgba.push_back(static_cast<unsigned char>(std::lround(255.0f * std::clamp(pixel[channel], 0.0f, 1.0f))));
+                seen.picture.rgba.push_back(
+                    static_cast<unsigned char>(std::lround(255.0f * std::clamp(pixel[channel], 0.0f, 1.0f))));
             }
             seen.picture.rgba.push_back(255);
         }

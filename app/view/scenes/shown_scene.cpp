@@ -10,12 +10,15 @@
 
 namespace binosplat {
 
-ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead)
+ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log,
+                       std::optional<FramesAhead> ahead)
     : context_(context), options_(options), log_(log), ahead_(std::move(ahead)) {
     begin(options.scene, options.compare);
 }
 
-std::string ShownScene::names() const { return other_.scene ? fmt::format("{} | {}", name(), other_.scene->name) : name(); }
+std::string ShownScene::names() const {
+    return other_.scene ? fmt::format("{} | {}", name(), other_.scene->name) : name();
+}
 
 std::optional<double> ShownScene::loading() const {
     if (loader_) { return loader_->progress(); }
@@ -27,7 +30,8 @@ std::optional<double> ShownScene::loading() const {
 
 bool ShownScene::isLoading() const {
     return loader_ || other_loader_ || maker_ ||
-           std::ranges::any_of(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
+           std::ranges::any_of(given_up_,
+                               [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
 }
 
 void ShownScene::begin(const std::string& scene, const std::string& compared) {
@@ -66,7 +70,8 @@ void ShownScene::beginBeside(int step, FileWorker& files) {
 void ShownScene::lookBeside(FileWorker& files) {
     is_looking_ = true;
     files.read("looking beside " + asked_,
-               [this, &files, scene = asked_, step = std::exchange(steps_asked_, 0), count = asked_count_]() -> FileWorker::Done {
+               [this, &files, scene = asked_, step = std::exchange(steps_asked_, 0),
+                count = asked_count_]() -> FileWorker::Done {
                    return [this, &files, count, found = sceneBeside(scene, step)] {
                        is_looking_ = false;
                        // Unless another scene was asked for since.
@@ -99,7 +104,8 @@ void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool ti
     for (Held* const held : {&drawing(), &resting()}) {
         if (loads || maker_ || !held->scene || held->ready->isLike(*ahead_)) { continue; }
         made_for_ = held;
-        maker_ = std::make_unique<KernelMaker>(context_, held->scene->gpu_scene, options_.run.camera, *ahead_);
+        maker_ =
+            std::make_unique<KernelMaker>(context_, held->scene->gpu_scene, options_.run.camera, *ahead_);
     }
 }
 
@@ -206,7 +212,8 @@ std::string ShownScene::makeWay(const ViewState& state) {
     shown_.scene.reset();
     load(std::string(asked_));
     compared_next_ = compared;
-    return fmt::format("{} and {} do not fit into the device's memory together: the first one goes first", gone_first_, asked_);
+    return fmt::format("{} and {} do not fit into the device's memory together: the first one goes first",
+                       gone_first_, asked_);
 }
 
 std::string ShownScene::place(ViewState& state) {

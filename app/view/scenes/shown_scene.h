@@ -20,7 +20,8 @@ class ShownScene {
 public:
     // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead`
     // scenes come with their kernels.
-    ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead = {});
+    ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log,
+               std::optional<FramesAhead> ahead = {});
 
     // Null until the first scene is loaded.
     [[nodiscard]] LoadedScene* get() const { return shown_.scene.get(); }
@@ -47,7 +48,9 @@ public:
     // True if a thread still loads or compiles anything, wanted or given up.
     [[nodiscard]] bool isLoading() const;
     // True if it can be taken, and no thread makes kernels for the current one any more.
-    [[nodiscard]] bool isNextReady() const { return loader_ && loader_->isDone() && (!maker_ || maker_->isDone()); }
+    [[nodiscard]] bool isNextReady() const {
+        return loader_ && loader_->isDone() && (!maker_ || maker_->isDone());
+    }
     // The same for the other scene of a comparison.
     [[nodiscard]] bool isOtherReady() const {
         return shown_.scene && other_loader_ && other_loader_->isDone() && (!maker_ || maker_->isDone());
@@ -94,7 +97,8 @@ public:
     // Before frames of it are shown: makes what such frames take, and draws two, so that showing it needs no
     // wait. Does nothing if there is no other scene, or if frames are as they were. The eyes are those of the
     // shown one. Throws Error if the device lacks the memory.
-    void meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes, const FrameSettings& inset);
+    void meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes,
+                   const FrameSettings& inset);
     // From now on frames draw the other scene, if there is one, or the shown one again. No frame has a
     // history across such a cut.
     void draw(bool other);

@@ -47,7 +47,9 @@ std::vector<std::string> scenesIn(const fs::path& folder, const fs::path& as) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored)) {
         const fs::path name = entry.path().filename();
-        if (!name.string().starts_with('.') && looksLikeScene(entry.path())) { scenes.push_back((as / name).string()); }
+        if (!name.string().starts_with('.') && looksLikeScene(entry.path())) {
+            scenes.push_back((as / name).string());
+        }
     }
     return scenes;
 }
@@ -57,8 +59,8 @@ std::vector<std::string> scenesIn(const fs::path& folder, const fs::path& as) {
 bool looksLikeScene(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
-        return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path) ||
-               looksMoving(path) || holdsOneScene(path);
+        return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) ||
+               findTrainingOutput(path) || looksMoving(path) || holdsOneScene(path);
     }
     return hasSceneName(path);
 }
@@ -66,7 +68,9 @@ bool looksLikeScene(const fs::path& path) {
 std::vector<std::string> scenesBeside(const std::string& scene) {
     std::vector<std::string> scenes;
     if (isBuiltin(scene)) {
-        for (const BuiltinInfo& info : listBuiltins()) { scenes.push_back("builtin:" + std::string(info.name)); }
+        for (const BuiltinInfo& info : listBuiltins()) {
+            scenes.push_back("builtin:" + std::string(info.name));
+        }
     } else if (isAddress(scene)) {
         scenes.push_back(scene);  // servers do not list what lies beside it
     } else {

@@ -10,7 +10,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr const char* kNone = "this scene has no viewpoints: keep one on the page Scenes, or put a cameras.json beside it";
+constexpr const char* kNone =
+    "this scene has no viewpoints: keep one on the page Scenes, or put a cameras.json beside it";
 
 bool areSame(const View& a, const View& b) { return a.eye == b.eye && a.look == b.look && a.up == b.up; }
 
@@ -57,7 +58,9 @@ std::string ViewpointList::words() const {
 void ViewpointList::keep(const View& view) {
     if (scene_ == nullptr) { return; }
     std::vector<Viewpoint>& all = scene_->viewpoints;
-    const auto isTaken = [&](const std::string& name) { return std::ranges::find(all, name, &Viewpoint::name) != all.end(); };
+    const auto isTaken = [&](const std::string& name) {
+        return std::ranges::find(all, name, &Viewpoint::name) != all.end();
+    };
     auto number = 1 + std::ranges::count_if(all, &Viewpoint::is_own);
     while (isTaken(fmt::format("your own {}", number))) { ++number; }
     all.push_back({fmt::format("your own {}", number), view, true});
@@ -81,7 +84,10 @@ void ViewpointList::moveBy(int step) {
     if (!requireOwn()) { return; }
     std::vector<Viewpoint>& all = scene_->viewpoints;
     const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(*at_) + step;
-    if (to < 0 || to >= static_cast<std::ptrdiff_t>(all.size()) || !all[static_cast<std::size_t>(to)].is_own) { return; }
+    if (to < 0 || to >= static_cast<std::ptrdiff_t>(all.size()) ||
+        !all[static_cast<std::size_t>(to)].is_own) {
+        return;
+    }
     std::swap(all[*at_], all[static_cast<std::size_t>(to)]);
     at_ = static_cast<std::size_t>(to);
     save(words());
@@ -97,13 +103,14 @@ void ViewpointList::forget() {
 }
 
 void ViewpointList::save(const std::string& outcome) {
-    files_.write("keeping viewpoints", [this, outcome, source = scene_->name, own = ownOnes(*scene_)]() -> FileWorker::Done {
-        std::string said = outcome;
-        try {
-            keepViewpoints(source, own);
-        } catch (const Error& error) { said = error.what(); }
-        return [this, said] { say_(said); };
-    });
+    files_.write("keeping viewpoints",
+                 [this, outcome, source = scene_->name, own = ownOnes(*scene_)]() -> FileWorker::Done {
+                     std::string said = outcome;
+                     try {
+                         keepViewpoints(source, own);
+                     } catch (const Error& error) { said = error.what(); }
+                     return [this, said] { say_(said); };
+                 });
 }
 
 void ViewpointList::writeShared() {
@@ -123,19 +130,20 @@ void ViewpointList::writeShared() {
 
 void ViewpointList::read(std::string file) {
     if (scene_ == nullptr) { return; }
-    files_.read("reading viewpoints", [this, file = std::move(file), source = scene_->name]() -> FileWorker::Done {
-        std::string from = file, trouble;
-        std::vector<Viewpoint> found;
-        try {
-            if (from.empty()) { from = sharedViewpoints(source).string(); }
-            found = readViewpoints(from);
-        } catch (const Error& error) { trouble = error.what(); }
-        return [this, source, from, trouble, found] {
-            if (!trouble.empty()) { return say_(trouble); }
-            // Otherwise another scene came meanwhile.
-            if (scene_ != nullptr && scene_->name == source) { add(found, from); }
-        };
-    });
+    files_.read("reading viewpoints",
+                [this, file = std::move(file), source = scene_->name]() -> FileWorker::Done {
+                    std::string from = file, trouble;
+                    std::vector<Viewpoint> found;
+                    try {
+                        if (from.empty()) { from = sharedViewpoints(source).string(); }
+                        found = readViewpoints(from);
+                    } catch (const Error& error) { trouble = error.what(); }
+                    return [this, source, from, trouble, found] {
+                        if (!trouble.empty()) { return say_(trouble); }
+                        // Otherwise another scene came meanwhile.
+                        if (scene_ != nullptr && scene_->name == source) { add(found, from); }
+                    };
+                });
 }
 
 void ViewpointList::add(const std::vector<Viewpoint>& read, const std::string& file) {
@@ -147,7 +155,8 @@ void ViewpointList::add(const std::vector<Viewpoint>& read, const std::string& f
         scene_->viewpoints.push_back(std::move(viewpoint));
         ++added;
     }
-    const std::string outcome = fmt::format("{} viewpoints from {}, {} of them new", read.size(), file, added);
+    const std::string outcome =
+        fmt::format("{} viewpoints from {}, {} of them new", read.size(), file, added);
     added > 0 ? save(outcome) : say_(outcome);
 }
 

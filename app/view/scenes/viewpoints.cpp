@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostKept = 1000;
 constexpr const char* kExtension = ".viewpoints.json";
-constexpr std::array kPoints{std::pair("eye", &View::eye), std::pair("look", &View::look), std::pair("up", &View::up)};
+constexpr std::array kPoints{std::pair("eye", &View::eye), std::pair("look", &View::look),
+                             std::pair("up", &View::up)};
 
 fs::path keptFile(const std::string& source) { return viewFileStem(source).string() + kExtension; }
 // A line of nine numbers for each, as programs before wrote it.
@@ -46,8 +47,12 @@ std::vector<Viewpoint> readOld(const fs::path& file) {
     for (std::string line; std::getline(lines, line) && kept.size() < kMostKept;) {
         std::istringstream numbers(line);
         View view{};
-        for (const auto& [name, point] : kPoints) { numbers >> (view.*point).x >> (view.*point).y >> (view.*point).z; }
-        if (numbers && isView(view)) { kept.push_back({fmt::format("your own {}", kept.size() + 1), view, true}); }
+        for (const auto& [name, point] : kPoints) {
+            numbers >> (view.*point).x >> (view.*point).y >> (view.*point).z;
+        }
+        if (numbers && isView(view)) {
+            kept.push_back({fmt::format("your own {}", kept.size() + 1), view, true});
+        }
     }
     return kept;
 }
@@ -76,7 +81,8 @@ std::vector<Viewpoint> readViewpoints(const fs::path& file) {
         const JsonNode node = list.at(i);
         Viewpoint viewpoint{node.at("name").text(), {{}, {}, {}, 60.0}, true};
         for (const auto& [key, point] : kPoints) { viewpoint.view.*point = pointIn(node.at(key)); }
-        check(isView(viewpoint.view), "{}: looks nowhere, must have a place to look at that is not the eye's, nor straight up",
+        check(isView(viewpoint.view),
+              "{}: looks nowhere, must have a place to look at that is not the eye's, nor straight up",
               node.place());
         viewpoints.push_back(std::move(viewpoint));
     }
@@ -84,7 +90,8 @@ std::vector<Viewpoint> readViewpoints(const fs::path& file) {
 }
 
 void writeViewpoints(const fs::path& file, const std::vector<Viewpoint>& viewpoints) {
-    check(viewpoints.size() <= kMostKept, "{}: {} viewpoints, which are more than {}", file.string(), viewpoints.size(), kMostKept);
+    check(viewpoints.size() <= kMostKept, "{}: {} viewpoints, which are more than {}", file.string(),
+          viewpoints.size(), kMostKept);
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Viewpoint& viewpoint : viewpoints) {
         nlohmann::ordered_json entry{{"name", viewpoint.name}};
@@ -97,7 +104,8 @@ void writeViewpoints(const fs::path& file, const std::vector<Viewpoint>& viewpoi
     // Names come from outside: what is no UTF-8 is replaced.
     const nlohmann::ordered_json document{{"viewpoints", list}};
     OutputFiles files(file.parent_path());
-    writeText(files.staging() / file.filename(), document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    writeText(files.staging() / file.filename(),
+              document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     files.publish();
 }
 
@@ -111,7 +119,8 @@ fs::path sharedViewpoints(const std::string& source) {
     std::error_code ignored;
     fs::path place = fs::absolute(source, ignored).lexically_normal();
     if (!place.has_filename()) { place = place.parent_path(); }
-    return place.parent_path() / ((fs::is_directory(place, ignored) ? place.filename() : place.stem()).string() + kExtension);
+    return place.parent_path() /
+           ((fs::is_directory(place, ignored) ? place.filename() : place.stem()).string() + kExtension);
 }
 
 std::vector<Viewpoint> keptViewpoints(const std::string& source) {
@@ -133,16 +142,19 @@ void keepViewpoints(const std::string& source, const std::vector<Viewpoint>& own
     fs::remove(oldFile(source), ignored);  // they are in the new one
 }
 
-std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source, const fs::path& camera_file) {
+std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source,
+                                      const fs::path& camera_file) {
     std::vector<FileCamera> cameras;
     try {
-        cameras = camera_file.empty() ? readSceneCameras(source, scene.origin).cameras : readCameraFile(camera_file, scene.origin);
+        cameras = camera_file.empty() ? readSceneCameras(source, scene.origin).cameras
+                                      : readCameraFile(camera_file, scene.origin);
     } catch (const Error&) {}  // the file was read before, but is gone
     const std::optional<CamerasUp> found = upOfCameras(cameras, scene);
     std::vector<Viewpoint> viewpoints;
     for (const FileCamera& camera : cameras) {
         const Pose& pose = camera.eye.world_from_camera;
-        const glm::dvec3 ahead = pose.orientation * glm::dvec3(0.0, 0.0, 1.0), own_up = pose.orientation * glm::dvec3(0.0, -1.0, 0.0);
+        const glm::dvec3 ahead = pose.orientation * glm::dvec3(0.0, 0.0, 1.0),
+                         own_up = pose.orientation * glm::dvec3(0.0, -1.0, 0.0);
         View view{pose.position, pose.position + ahead, found ? found->up : own_up, 60.0};
         if (!isView(view)) { view.up = own_up; }
         viewpoints.push_back({camera.name, view});
@@ -156,16 +168,19 @@ std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& sou
 
 Similarity placedAt(const View& view, const Similarity& scene_from_room, const Pose& room_from_head) {
     // Upright, looking that way, and turned back by the head's heading in the room.
-    const glm::dquat head_turn = lookAt(glm::dvec3(0.0), levelAhead(room_from_head), {0.0, -1.0, 0.0}).orientation;
+    const glm::dquat head_turn =
+        lookAt(glm::dvec3(0.0), levelAhead(room_from_head), {0.0, -1.0, 0.0}).orientation;
     const glm::dquat upright = startPlacement(view, 1.0).orientation;
-    Similarity placed{glm::normalize(upright * glm::conjugate(head_turn)), glm::dvec3(0.0), scene_from_room.scale};
+    Similarity placed{glm::normalize(upright * glm::conjugate(head_turn)), glm::dvec3(0.0),
+                      scene_from_room.scale};
     placed.position = view.eye - transform(placed, room_from_head.position);
     return placed;
 }
 
 View viewOf(const Similarity& scene_from_room, const Pose& room_from_head) {
     const Pose eye = transform(scene_from_room, room_from_head);
-    return {eye.position, eye.position + scene_from_room.scale * (eye.orientation * glm::dvec3(0.0, 0.0, 1.0)),
+    return {eye.position,
+            eye.position + scene_from_room.scale * (eye.orientation * glm::dvec3(0.0, 0.0, 1.0)),
             scene_from_room.orientation * glm::dvec3(0.0, -1.0, 0.0), 60.0};
 }
 

@@ -20,7 +20,8 @@ struct Viewpoint {
 
 // Cameras of the scene's cameras.json or of `camera_file`, upright, and then kept viewpoints, all among the
 // scene's positions. What cannot be read is left out. `source`: where `scene` is from.
-std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source, const std::filesystem::path& camera_file);
+std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source,
+                                      const std::filesystem::path& camera_file);
 
 // The own ones of a scene, in the coordinates of its file: kept beside its settings or, if there are none,
 // shared beside the scene.

@@ -21,8 +21,8 @@ constexpr std::uint64_t kSplatsPerGibibyte = 1'000'000;
 
 DeviceDefaults defaultsOf(std::string_view device_name, bool is_integrated, std::uint64_t memory_bytes) {
     constexpr std::array<std::string_view, 3> kNames{"Turnip", "Panfrost", "Mali"};
-    const bool is_named =
-        std::ranges::any_of(kNames, [&](std::string_view name) { return device_name.find(name) != std::string_view::npos; });
+    const bool is_named = std::ranges::any_of(
+        kNames, [&](std::string_view name) { return device_name.find(name) != std::string_view::npos; });
     if (!is_integrated || (!is_named && memory_bytes >= kSmallBelow)) { return {}; }
     return {.quality = Quality::kFast,
             .resolution_scale = 0.7,
@@ -33,9 +33,11 @@ DeviceDefaults defaultsOf(std::string_view device_name, bool is_integrated, std:
 
 std::string describeDefaults(const DeviceDefaults& defaults) {
     if (defaults == DeviceDefaults{}) { return ""; }
-    return fmt::format("quality {}, resolution-scale {:g}, refresh-rate {:g} where offered, sh-degree {}, splat-budget {} at most",
-                       kQualityNames[static_cast<int>(defaults.quality)], defaults.resolution_scale, defaults.refresh_rate,
-                       *defaults.sh_degree, defaults.most_splats);
+    return fmt::format(
+        "quality {}, resolution-scale {:g}, refresh-rate {:g} where offered, sh-degree {}, splat-budget {} "
+        "at most",
+        kQualityNames[static_cast<int>(defaults.quality)], defaults.resolution_scale, defaults.refresh_rate,
+        *defaults.sh_degree, defaults.most_splats);
 }
 
 }  // namespace binosplat

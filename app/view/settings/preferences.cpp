@@ -16,9 +16,12 @@ namespace binosplat {
 namespace {
 
 constexpr double kStillSeconds = 1.0;
-constexpr std::array kOfOneRun{std::string_view("panel"), std::string_view("panel-page"), std::string_view("tint")};
+constexpr std::array kOfOneRun{std::string_view("panel"), std::string_view("panel-page"),
+                               std::string_view("tint")};
 
-bool isPreference(const SettingLine& line) { return std::ranges::find(kOfOneRun, line.key) == kOfOneRun.end(); }
+bool isPreference(const SettingLine& line) {
+    return std::ranges::find(kOfOneRun, line.key) == kOfOneRun.end();
+}
 
 }  // namespace
 
@@ -48,14 +51,17 @@ PreferenceLines readPreferences(const std::vector<SettingsTable>& tables) {
         const auto found = lines.find({line.table, line.key});
         if (found != lines.end()) { found->second = line.value; }
     }
-    if (const auto found = lines.find({"stereo", "foveation"}); found != lines.end() && run.stereo.foveation_deg == 0.0) {
+    if (const auto found = lines.find({"stereo", "foveation"});
+        found != lines.end() && run.stereo.foveation_deg == 0.0) {
         found->second = "0";
     }
     return lines;
 }
 
 std::string preferencesToml(const PreferenceLines& lines) {
-    std::string text = "# What was set on the viewer's panel. It writes this file itself; values of --config come before these.\n";
+    std::string text =
+        "# What was set on the viewer's panel. It writes this file itself; values of --config come before "
+        "these.\n";
     std::string table;
     for (const auto& [place, value] : lines) {
         if (value.empty()) { continue; }
@@ -71,7 +77,9 @@ void Preferences::note(const ViewSettings& now, double step_seconds) {
     if (*known_ == now) { return; }
     const std::vector<SettingLine> before = settingLines(*known_);
     for (const SettingLine& line : settingLines(now)) {
-        if (isPreference(line) && std::ranges::find(before, line) == before.end()) { changes_[{line.table, line.key}] = line.value; }
+        if (isPreference(line) && std::ranges::find(before, line) == before.end()) {
+            changes_[{line.table, line.key}] = line.value;
+        }
     }
     known_ = now;
     still_s_ = 0.0;

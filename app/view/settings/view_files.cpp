@@ -29,7 +29,9 @@ std::uint64_t fingerprint(const std::string& text) {
 // their fingerprints.
 std::string withRoomFor(std::size_t more_bytes, std::string name) {
     std::size_t bytes = std::min(name.size(), std::size_t{255} - more_bytes);
-    while (bytes > 0 && bytes < name.size() && (static_cast<std::uint8_t>(name[bytes]) & 0xc0) == 0x80) { --bytes; }
+    while (bytes > 0 && bytes < name.size() && (static_cast<std::uint8_t>(name[bytes]) & 0xc0) == 0x80) {
+        --bytes;
+    }
     name.resize(bytes);
     return name;
 }
@@ -48,12 +50,15 @@ fs::path viewFolder() {
 }
 
 fs::path viewSettingsFile(const std::string& scene) {
-    if (isBuiltin(scene)) { return configFolder() / (scene.substr(std::string("builtin:").size()) + ".view.toml"); }
+    if (isBuiltin(scene)) {
+        return configFolder() / (scene.substr(std::string("builtin:").size()) + ".view.toml");
+    }
     std::error_code ignored;
     fs::path place = isAddress(scene) ? fs::path(scene) : fs::weakly_canonical(scene, ignored);
     if (!place.has_filename()) { place = place.parent_path(); }
     const std::uintmax_t bytes = fs::is_regular_file(place, ignored) ? fs::file_size(place, ignored) : 0;
-    const std::string tail = fmt::format("-{:016x}.view.toml", fingerprint(fmt::format("{}:{}", place.string(), bytes)));
+    const std::string tail =
+        fmt::format("-{:016x}.view.toml", fingerprint(fmt::format("{}:{}", place.string(), bytes)));
     return configFolder() / (withRoomFor(tail.size(), place.stem().string()) + tail);
 }
 

@@ -20,7 +20,9 @@ glm::dquat readRotation(const Setting& setting) {
     for (const std::string& item : setting.items) {
         if (const std::optional<double> value = parseNumber(item)) { values.push_back(*value); }
     }
-    const auto refuse = [&](bool wrong) { check(!wrong, "{} is {}, must be a rotation [w, x, y, z]", setting.origin, setting.text()); };
+    const auto refuse = [&](bool wrong) {
+        check(!wrong, "{} is {}, must be a rotation [w, x, y, z]", setting.origin, setting.text());
+    };
     refuse(values.size() != 4 || setting.items.size() != 4);
     const glm::dquat rotation(values[0], values[1], values[2], values[3]);
     refuse(!(glm::length(rotation) > 1e-6));
@@ -31,17 +33,21 @@ template <typename Owner>
 SettingLine lineOf(const OptionRow<Owner>& row, const Owner& owner) {
     const OptionValue value = row.field.value(owner);
     const std::string text = textOf(value);
-    return {row.text.table, row.text.key, std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text};
+    return {row.text.table, row.text.key,
+            std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text};
 }
 
 std::string placeLines(const ViewSettings& settings) {
     std::string text;
     if (settings.scene_from_room) {
         const auto& [q, p, scale] = *settings.scene_from_room;
-        text += fmt::format("scene-position = [{}, {}, {}]\nscene-orientation = [{}, {}, {}, {}]\nunits-per-metre = {}\n", p.x, p.y, p.z,
-                            q.w, q.x, q.y, q.z, scale);
+        text += fmt::format(
+            "scene-position = [{}, {}, {}]\nscene-orientation = [{}, {}, {}, {}]\nunits-per-metre = {}\n",
+            p.x, p.y, p.z, q.w, q.x, q.y, q.z, scale);
     }
-    if (settings.metres_per_unit) { text += fmt::format("metres-per-unit = {}\n", *settings.metres_per_unit); }
+    if (settings.metres_per_unit) {
+        text += fmt::format("metres-per-unit = {}\n", *settings.metres_per_unit);
+    }
     return text;
 }
 
@@ -57,42 +63,60 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
             field::number<&S::resolution_scale>(0.1, 2.0)),
         row("tint", "", "tint tiles by what made them", field::flag<&S::tint>()),
         row("panel", "", "show the panel at the start", field::flag<&S::panel>()),
-        row("submit-depth", "", "give the runtime the pictures' depth, so that it can correct them for late head motion",
+        row("submit-depth", "",
+            "give the runtime the pictures' depth, so that it can correct them for late head motion",
             field::flag<&S::submit_depth>()),
-        row("visibility-mask", "", "ask the runtime what the lenses hide", field::flag<&S::visibility_mask>()),
-        row("eye-tracking", "", "with foveation: follow the gaze, if the headset tracks it", field::flag<&S::eye_tracking>()),
-        row("foveated-inset", "", "with foveation: if the runtime takes a sharp inset over a coarse picture, give it both",
+        row("visibility-mask", "", "ask the runtime what the lenses hide",
+            field::flag<&S::visibility_mask>()),
+        row("eye-tracking", "", "with foveation: follow the gaze, if the headset tracks it",
+            field::flag<&S::eye_tracking>()),
+        row("foveated-inset", "",
+            "with foveation: if the runtime takes a sharp inset over a coarse picture, give it both",
             field::flag<&S::foveated_inset>()),
         row("tilt", "", "two hands may tilt the scene", field::flag<&S::tilt>()),
-        row("refresh-rate", "HZ", "one of the headset's rates; 0: the runtime's choice", field::number<&S::refresh_rate>(0.0, 1000.0)),
+        row("refresh-rate", "HZ", "one of the headset's rates; 0: the runtime's choice",
+            field::number<&S::refresh_rate>(0.0, 1000.0)),
         row("hands", "", "draw hands, or the controllers they hold", field::flag<&S::hands>()),
-        row("locomotion", "KIND", "what the left stick does", field::named<&S::teleport>({"walk", "teleport"})),
+        row("locomotion", "KIND", "what the left stick does",
+            field::named<&S::teleport>({"walk", "teleport"})),
         row("turn", "KIND", "how the right stick turns: by 30 degrees at a time, or smoothly",
             field::named<&S::smooth_turn>({"snap", "smooth"})),
-        row("follow-ground", "", "stand on the scene's ground wherever one goes", field::flag<&S::follow_ground>()),
+        row("follow-ground", "", "stand on the scene's ground wherever one goes",
+            field::flag<&S::follow_ground>()),
         row("backdrop", "COLOUR", "colour behind the scene; as-set: what --background says",
             field::named<&S::backdrop>({"as-set", "black", "grey", "white"})),
-        row("panel-page", "PAGE", "page on which the panel opens; time: for a scene that moves; help: in a headset",
+        row("panel-page", "PAGE",
+            "page on which the panel opens; time: for a scene that moves; help: in a headset",
             field::named<&S::page>({"view", "scenes", "method", "time", "help"})),
-        row("first-steps", "WHEN", "show three gestures at the start: once, the first time; with --simulate never, unless this says so",
+        row("first-steps", "WHEN",
+            "show three gestures at the start: once, the first time; with --simulate never, unless this says "
+            "so",
             field::named<&S::first_steps>({"once", "always", "never"})),
-        row("vignette", "", "darken the edge of the view while a stick moves the wearer", field::flag<&S::vignette>()),
-        row("passthrough", "", "show the room behind the scene, if the headset can", field::flag<&S::passthrough>()),
+        row("vignette", "", "darken the edge of the view while a stick moves the wearer",
+            field::flag<&S::vignette>()),
+        row("passthrough", "", "show the room behind the scene, if the headset can",
+            field::flag<&S::passthrough>()),
         row("quality", "PRESET", "how the frame rate is held, see headset.md",
             field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})),
-        row("picture-both-eyes", "", "pictures that are taken show both eyes, side by side", field::flag<&S::picture_both_eyes>()),
-        row("window-stereo", "KIND", "in a window without a headset: one eye's picture, or how both are shown",
-            field::named<&S::window_stereo>({"mono", "side-by-side", "cross-eyed", "top-bottom", "anaglyph"})),
-        row("window-eyes", "SHARE", "in a window: distance between the eyes, as a share of the distance to the screen plane",
+        row("picture-both-eyes", "", "pictures that are taken show both eyes, side by side",
+            field::flag<&S::picture_both_eyes>()),
+        row("window-stereo", "KIND",
+            "in a window without a headset: one eye's picture, or how both are shown",
+            field::named<&S::window_stereo>(
+                {"mono", "side-by-side", "cross-eyed", "top-bottom", "anaglyph"})),
+        row("window-eyes", "SHARE",
+            "in a window: distance between the eyes, as a share of the distance to the screen plane",
             field::number<&S::window_eyes>(0.0, 0.2)),
-        row("window-plane", "FACTOR", "in a window: distance to the screen plane, in distances to the point that you orbit",
+        row("window-plane", "FACTOR",
+            "in a window: distance to the screen plane, in distances to the point that you orbit",
             field::number<&S::window_plane>(0.1, 10.0)),
     };
     return rows;
 }
 
 const OptionRow<ViewSettings>* findViewRow(std::string_view key) {
-    const auto found = std::ranges::find(viewSettingsRows(), key, [](const auto& row) { return std::string_view(row.text.key); });
+    const auto found = std::ranges::find(viewSettingsRows(), key,
+                                         [](const auto& row) { return std::string_view(row.text.key); });
     return found == viewSettingsRows().end() ? nullptr : &*found;
 }
 
@@ -120,7 +144,8 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
             }
         }
         check(placed == 0 || placed == 3,
-              "{}: [view] places the scene only in part, must have all of scene-position, scene-orientation and units-per-metre",
+              "{}: [view] places the scene only in part, must have all of scene-position, scene-orientation "
+              "and units-per-metre",
               table.origin);
     }
     if (placed == 3) { settings.scene_from_room = placement; }
@@ -134,7 +159,9 @@ std::vector<SettingLine> settingLines(const ViewSettings& settings) {
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
         // Half resolution goes with foveation: other commands refuse it alone.
-        if (std::string_view(row.text.key) == "periphery" && settings.stereo.foveation_deg == 0.0) { continue; }
+        if (std::string_view(row.text.key) == "periphery" && settings.stereo.foveation_deg == 0.0) {
+            continue;
+        }
         lines.push_back(lineOf(row, options));
     }
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { lines.push_back(lineOf(row, settings)); }
@@ -142,11 +169,14 @@ std::vector<SettingLine> settingLines(const ViewSettings& settings) {
 }
 
 std::string viewSettingsToml(const ViewSettings& settings) {
-    std::string text = "# What the viewer's panel was set to, and where the wearer's room lay in the scene.\n";
+    std::string text =
+        "# What the viewer's panel was set to, and where the wearer's room lay in the scene.\n";
     const char* table = "";
     for (const SettingLine& line : settingLines(settings)) {
         if (line.value.empty()) { continue; }  // left to the scene
-        if (std::string_view(std::exchange(table, line.table)) != line.table) { text += fmt::format("\n[{}]\n", line.table); }
+        if (std::string_view(std::exchange(table, line.table)) != line.table) {
+            text += fmt::format("\n[{}]\n", line.table);
+        }
         text += fmt::format("{} = {}\n", line.key, line.value);
     }
     return text + placeLines(settings);

@@ -57,7 +57,9 @@ struct ViewSettings {
 
     // True if both eyes are shown the dominant one's picture.
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
-    [[nodiscard]] bool wantsInset() const { return foveated_inset && stereo.half_periphery && stereo.foveation_deg > 0.0; }
+    [[nodiscard]] bool wantsInset() const {
+        return foveated_inset && stereo.half_periphery && stereo.foveation_deg > 0.0;
+    }
 };
 
 // The config's [view] over `settings`: the rows of view_settings_table.h, and together scene-position,

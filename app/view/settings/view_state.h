@@ -11,7 +11,9 @@ class ViewState {
 public:
     // A placement among the settings is that of the first scene.
     explicit ViewState(ViewSettings settings = {})
-        : asked_(std::exchange(settings.scene_from_room, {})), settings_(std::move(settings)), said_(settings_) {
+        : asked_(std::exchange(settings.scene_from_room, {})),
+          settings_(std::move(settings)),
+          said_(settings_) {
         settings_.metres_per_unit = said_.metres_per_unit = {};
     }
 
@@ -42,12 +44,16 @@ public:
     // These settings were drawn, so they fit in memory.
     void keepFitting(const ViewSettings& drawn) { fitting_ = drawn; }
     // Changes since then; empty if there are none, or if nothing was drawn yet.
-    [[nodiscard]] std::string changeSinceFitting() const { return fitting_ ? describeChange(*fitting_, settings_) : ""; }
+    [[nodiscard]] std::string changeSinceFitting() const {
+        return fitting_ ? describeChange(*fitting_, settings_) : "";
+    }
     // Returns to the settings that fit; only if changeSinceFitting() is not empty.
     void goBack() { settings_ = *fitting_; }
 
     // Changes since the last call, see describeChange.
-    [[nodiscard]] std::string takeChange() { return describeChange(std::exchange(said_, settings_), settings_); }
+    [[nodiscard]] std::string takeChange() {
+        return describeChange(std::exchange(said_, settings_), settings_);
+    }
 
 private:
     [[nodiscard]] std::optional<Similarity> inScene(std::optional<Similarity> placement) const {

@@ -18,7 +18,8 @@ constexpr double kSmoothSeconds = 0.15, kMostMetresPerSecond = 1.5;
 
 bool isHeldByHand(const WearerNow& now, const PanelInRoom& panel) {
     const glm::dvec2& stick = now.hands[kRight].stick;
-    const bool rises = std::abs(stick.y) > std::max(std::abs(stick.x), kStickDeadZone) && !panel.isPointedAtBy(kRight);
+    const bool rises =
+        std::abs(stick.y) > std::max(std::abs(stick.x), kStickDeadZone) && !panel.isPointedAtBy(kRight);
     return rises || now.hands[kLeft].grabs || now.hands[kRight].grabs;
 }
 
@@ -26,7 +27,9 @@ bool isHeldByHand(const WearerNow& now, const PanelInRoom& panel) {
 std::optional<double> floorMetres(const WearerNow& now, const Similarity& scene_from_room) {
     if (!now.scene_floor) { return std::nullopt; }
     const glm::dvec3& head = now.room_from_head.position;
-    return head.y + (glm::dot(now.scene_floor->up, transform(scene_from_room, head)) - now.scene_floor->height) / scene_from_room.scale;
+    return head.y +
+           (glm::dot(now.scene_floor->up, transform(scene_from_room, head)) - now.scene_floor->height) /
+               scene_from_room.scale;
 }
 
 }  // namespace
@@ -39,7 +42,8 @@ ProbePath groundAhead(const Pose& room_from_head, double feet_m) {
     const glm::dvec3 feet(room_from_head.position.x, feet_m, room_from_head.position.z);
     ProbePath path;
     for (std::size_t i = 0; i < kProbePoints; ++i) {
-        path[i] = feet + kAheadMetres[i / kAsideMetres.size()] * ahead + kAsideMetres[i % kAsideMetres.size()] * aside;
+        path[i] = feet + kAheadMetres[i / kAsideMetres.size()] * ahead +
+                  kAsideMetres[i % kAsideMetres.size()] * aside;
     }
     return path;
 }
@@ -55,12 +59,15 @@ void FollowGround::remember(const std::vector<glm::dvec3>& ground_scene, double 
     }
 }
 
-std::optional<double> FollowGround::groundAt(const glm::dvec3& feet, const Similarity& scene_from_room) const {
+std::optional<double> FollowGround::groundAt(const glm::dvec3& feet,
+                                             const Similarity& scene_from_room) const {
     std::vector<double> heights_m;
     const Similarity room_from_scene = inverse(scene_from_room);
     for (const auto& [cell, point] : seen_) {
         const glm::dvec3 from_feet = transform(room_from_scene, point) - feet;
-        if (std::hypot(from_feet.x, from_feet.z) > kReachMetres || std::abs(from_feet.y) > kStepMetres) { continue; }
+        if (std::hypot(from_feet.x, from_feet.z) > kReachMetres || std::abs(from_feet.y) > kStepMetres) {
+            continue;
+        }
         heights_m.push_back(feet.y + from_feet.y);
     }
     if (heights_m.empty()) { return std::nullopt; }

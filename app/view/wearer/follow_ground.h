@@ -19,12 +19,15 @@ class FollowGround : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
     void letGo() override { seen_.clear(); }
-    [[nodiscard]] std::vector<ToolChoice> choices() const override { return {{"On ground", {}, &ViewSettings::follow_ground}}; }
+    [[nodiscard]] std::vector<ToolChoice> choices() const override {
+        return {{"On ground", {}, &ViewSettings::follow_ground}};
+    }
 
 private:
     void remember(const std::vector<glm::dvec3>& ground_scene, double units_per_metre);
     // The height of what was seen there, as the room's y; empty: nothing within a step.
-    [[nodiscard]] std::optional<double> groundAt(const glm::dvec3& feet, const Similarity& scene_from_room) const;
+    [[nodiscard]] std::optional<double> groundAt(const glm::dvec3& feet,
+                                                 const Similarity& scene_from_room) const;
 
     std::map<std::array<int, 3>, glm::dvec3> seen_;  // a point of the ground for each cell of the scene
     double units_per_metre_ = 1.0;                   // when they were seen

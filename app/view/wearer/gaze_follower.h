@@ -20,7 +20,8 @@ public:
 
     // By Side. `gaze_room`: a direction in the room, empty while none is tracked; an eye then looks up to
     // `lens_clear_rad` off its own axis. `step_seconds` is the time since the previous frame.
-    std::array<std::optional<Gaze>, 2> update(const std::optional<glm::dvec3>& gaze_room, const std::array<Pose, 2>& room_from_eyes,
+    std::array<std::optional<Gaze>, 2> update(const std::optional<glm::dvec3>& gaze_room,
+                                              const std::array<Pose, 2>& room_from_eyes,
                                               double lens_clear_rad, double step_seconds);
 
 private:

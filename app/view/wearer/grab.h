@@ -10,7 +10,9 @@ class Grab : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
     void letGo() override { held_ = {}; }
-    [[nodiscard]] std::vector<ToolChoice> choices() const override { return {{"Two-handed tilt", {}, &ViewSettings::tilt}}; }
+    [[nodiscard]] std::vector<ToolChoice> choices() const override {
+        return {{"Two-handed tilt", {}, &ViewSettings::tilt}};
+    }
 
 private:
     std::array<std::optional<glm::dvec3>, 2> held_;  // the last places of the hands that hold the scene

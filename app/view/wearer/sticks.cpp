@@ -25,11 +25,14 @@ double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0
 void Walk::update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
     const glm::dvec3 forward = levelAhead(now.room_from_head);
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
-    const auto stickOf = [&](int h) { return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick; };
+    const auto stickOf = [&](int h) {
+        return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick;
+    };
     const glm::dvec2 left_stick = state.settings().teleport ? glm::dvec2(0.0) : stickOf(kLeft);
     const glm::dvec2 walk(withoutShiver(left_stick.x), withoutShiver(left_stick.y));
     const double rise = withoutShiver(dominantAxis(stickOf(kRight)).y);
-    const glm::dvec3 step_m = kWalkMetresPerSecond * (walk.x * right + walk.y * forward) - kRiseMetresPerSecond * rise * down;
+    const glm::dvec3 step_m =
+        kWalkMetresPerSecond * (walk.x * right + walk.y * forward) - kRiseMetresPerSecond * rise * down;
     moves_ = step_m != glm::dvec3(0.0);
     if (moves_) { state.place(movedBy(state.sceneFromRoom(), now.step_seconds * step_m)); }
 }
@@ -46,7 +49,8 @@ void Turn::update(const WearerNow& now, const PanelInRoom& panel, ViewState& sta
         return;
     }
     if (std::abs(turn) > kStickPushed && !turned_) {
-        state.place(turnedBy(state.sceneFromRoom(), std::copysign(kTurnRadians, turn), now.room_from_head.position));
+        state.place(
+            turnedBy(state.sceneFromRoom(), std::copysign(kTurnRadians, turn), now.room_from_head.position));
         turned_ = true;
     } else if (std::abs(stick.x) < kStickRests) {  // however far the stick is pushed forwards
         turned_ = false;

@@ -17,7 +17,8 @@ constexpr double kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
 bool isBlocked(const PathSeen& path, const std::vector<glm::dvec3>& arc) {
     if (path.is_hidden || !path.meets || arc.empty()) { return path.is_hidden; }
     // The scene's own floor may lie a little above the room's.
-    return arc.back().y - pointAlong(arc, *path.meets / static_cast<double>(kProbePoints - 1)).y > kStepMetres;
+    return arc.back().y - pointAlong(arc, *path.meets / static_cast<double>(kProbePoints - 1)).y >
+           kStepMetres;
 }
 
 }  // namespace
@@ -29,7 +30,9 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
     const glm::dvec3 start = kThrowMetresPerSecond * (room_from_aim.orientation * glm::dvec3(0.0, 0.0, 1.0));
     const glm::dvec3 fall(0.0, kFallMetresPerSecond2, 0.0);
     // height = start.y t + fall t^2 / 2
-    const double seconds = (-start.y + std::sqrt(start.y * start.y + 2.0 * kFallMetresPerSecond2 * height_m)) / kFallMetresPerSecond2;
+    const double seconds =
+        (-start.y + std::sqrt(start.y * start.y + 2.0 * kFallMetresPerSecond2 * height_m)) /
+        kFallMetresPerSecond2;
     TeleportAim aim;
     constexpr std::size_t kLast = kArcPieces * kPointsOfPiece;
     for (std::size_t i = 0; i <= kLast; ++i) {

@@ -19,9 +19,12 @@ constexpr double kPalmCosine = 0.75;
 // lack.
 bool showsPalm(const xr::Hand& hand, int h, const glm::dvec3& eye) {
     if (!hand.joints) { return false; }
-    const auto place = [&](XrHandJointEXT joint) { return (*hand.joints)[static_cast<std::size_t>(joint)].place; };
+    const auto place = [&](XrHandJointEXT joint) {
+        return (*hand.joints)[static_cast<std::size_t>(joint)].place;
+    };
     const glm::dvec3 wrist = place(XR_HAND_JOINT_WRIST_EXT);
-    const glm::dvec3 across = glm::cross(place(XR_HAND_JOINT_INDEX_PROXIMAL_EXT) - wrist, place(XR_HAND_JOINT_LITTLE_PROXIMAL_EXT) - wrist);
+    const glm::dvec3 across = glm::cross(place(XR_HAND_JOINT_INDEX_PROXIMAL_EXT) - wrist,
+                                         place(XR_HAND_JOINT_LITTLE_PROXIMAL_EXT) - wrist);
     const glm::dvec3 to_eye = eye - place(XR_HAND_JOINT_PALM_EXT);
     const double facing = (h == kRight ? 1.0 : -1.0) * glm::dot(across, to_eye);
     return facing > kPalmCosine * glm::length(across) * glm::length(to_eye);
@@ -64,7 +67,9 @@ void WearerControls::pressButtons(const WearerNow& now, PanelInRoom& panel, View
     viewpoint_step_ = 0;
     for (const int h : {kLeft, kRight}) {
         const bool pressed = now.hands[static_cast<std::size_t>(h)].stick_presses;
-        if (!std::exchange(stick_presses_[static_cast<std::size_t>(h)], pressed) && pressed) { viewpoint_step_ += h == kRight ? 1 : -1; }
+        if (!std::exchange(stick_presses_[static_cast<std::size_t>(h)], pressed) && pressed) {
+            viewpoint_step_ += h == kRight ? 1 : -1;
+        }
     }
 }
 

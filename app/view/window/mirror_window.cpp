@@ -31,9 +31,11 @@ glm::ivec2 MirrorWindow::sizeFor(glm::uvec2 canvas_px) {
 
 MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas, EventWindow& events)
     : context_(context), canvas_(canvas), events_(events) {
-    check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
-    pictures_ = std::make_unique<WindowPictures>(context, vk::raii::SurfaceKHR(context.instance(), events.surface(context)),
-                                                 [this] { return events_.sizePx(); });
+    check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures",
+          context.deviceName());
+    pictures_ = std::make_unique<WindowPictures>(
+        context, vk::raii::SurfaceKHR(context.instance(), events.surface(context)),
+        [this] { return events_.sizePx(); });
 }
 
 MirrorWindow::~MirrorWindow() {
@@ -69,7 +71,8 @@ WindowInput MirrorWindow::poll() {
     const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
     const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
     const glm::dvec2 size(canvas_.sizePx());
-    const bool is_over = glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
+    const bool is_over =
+        glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
     // If another window lies above this one, the mouse belongs to that one.
     if (is_over && (down || events.is_hovered)) {
         input.pointer = {place, down, events.wheel};
@@ -93,8 +96,10 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
         eye_px_ = size_px;
         try {
             eye_.reset();
-            const vk::Format raw = texelLayoutOf(format).blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
-            eye_.emplace(context_, "the window's eye", size_px, raw, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
+            const vk::Format raw =
+                texelLayoutOf(format).blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
+            eye_.emplace(context_, "the window's eye", size_px, raw,
+                         Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
         } catch (const vk::OutOfDeviceMemoryError&) {
         } catch (const vk::OutOfHostMemoryError&) {
             // The window then shows only the panel: the headset matters more.
@@ -108,7 +113,8 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
 void MirrorWindow::record(Commands& commands) {
     const vk::Image target = pictures_->current();
     if (!target) { return; }
-    const int width = static_cast<int>(pictures_->sizePx().x), height = static_cast<int>(pictures_->sizePx().y);
+    const int width = static_cast<int>(pictures_->sizePx().x),
+              height = static_cast<int>(pictures_->sizePx().y);
     clearWindow(commands, target);
     const int split = std::clamp(width * kHeightPx / sizeFor(canvas_.sizePx()).x, 1, std::max(width - 1, 1));
     const auto show = [&](vk::Image image, glm::uvec2 size_px, const WindowPart& part) {

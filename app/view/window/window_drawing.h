@@ -19,6 +19,7 @@ void clearWindow(Commands& commands, vk::Image window);
 WindowPart fittedInto(glm::uvec2 from_px, const WindowPart& part);
 // Scales the first `from_px` pixels of an image into a part of the window; of these only what lies right of
 // the column `from_x`.
-void blitInto(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image window, const WindowPart& part, std::uint32_t from_x = 0);
+void blitInto(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image window,
+              const WindowPart& part, std::uint32_t from_x = 0);
 
 }  // namespace binosplat

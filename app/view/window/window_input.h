@@ -28,6 +28,7 @@ struct WindowInput {
 };
 
 // The wearer's place after `step_seconds` of input from keys and mouse.
-Similarity movedByWindow(const Similarity& scene_from_room, const WindowInput& input, const Pose& room_from_head, double step_seconds);
+Similarity movedByWindow(const Similarity& scene_from_room, const WindowInput& input,
+                         const Pose& room_from_head, double step_seconds);
 
 }  // namespace binosplat

@@ -20,10 +20,14 @@ constexpr int kCallsUntilUnused = 4;
 
 }  // namespace
 
-WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px, bool paced)
-    : context_(context), surface_(std::move(surface)), window_size_px_(std::move(window_size_px)), paced_(paced) {
-    check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
-          context.deviceName());
+WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface,
+                               std::function<glm::uvec2()> window_size_px, bool paced)
+    : context_(context),
+      surface_(std::move(surface)),
+      window_size_px_(std::move(window_size_px)),
+      paced_(paced) {
+    check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE,
+          "{} cannot show on this display", context.deviceName());
     acquired_fence_ = context.device().createFence({});
     make();
 }
@@ -45,15 +49,16 @@ void WindowPictures::make() {
         if (!paced_ && std::ranges::find(modes, better) != modes.end()) { mode = better; }
     }
     const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
-    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "this display's images cannot be copied to");
+    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst),
+          "this display's images cannot be copied to");
     window_px_ = window_size_px_();
     const auto extent = windowExtent(able, {window_px_.x, window_px_.y});
     is_stale_ = !extent;
     if (!extent) { return; }
     size_px_ = {extent->width, extent->height};
     const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
-    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format, format->colorSpace, *extent, 1,
-                                    vk::ImageUsageFlagBits::eTransferDst);
+    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format,
+                                    format->colorSpace, *extent, 1, vk::ImageUsageFlagBits::eTransferDst);
     info.preTransform = able.currentTransform;
     info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
     info.presentMode = mode;

@@ -14,7 +14,8 @@ class WindowPictures {
 public:
     // `window_size_px` returns the window's current size. Without `paced` a headset sets the pace, otherwise
     // the display. Throws Error if the device cannot show on the surface.
-    WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px, bool paced = false);
+    WindowPictures(const Context& context, vk::raii::SurfaceKHR surface,
+                   std::function<glm::uvec2()> window_size_px, bool paced = false);
 
     WindowPictures(const WindowPictures&) = delete;
     WindowPictures& operator=(const WindowPictures&) = delete;
@@ -27,7 +28,9 @@ public:
     [[nodiscard]] vk::Image current() const { return hold_ == Hold::kOurs ? images_[index_] : vk::Image(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     // The semaphore that the submission that draws on it signals; null if none was free.
-    [[nodiscard]] vk::Semaphore drawn() const { return hold_ == Hold::kOurs ? *drawn_.at(index_) : vk::Semaphore(); }
+    [[nodiscard]] vk::Semaphore drawn() const {
+        return hold_ == Hold::kOurs ? *drawn_.at(index_) : vk::Semaphore();
+    }
     // Once the submission is under way: shows the picture when it is drawn.
     void show();
 

@@ -112,7 +112,8 @@ private:
     }
 
     void end(CURL* handle, CURLcode code, bool is_stalled) {
-        const auto found = std::ranges::find(running_, handle, [](const auto& transfer) { return transfer->handle(); });
+        const auto found =
+            std::ranges::find(running_, handle, [](const auto& transfer) { return transfer->handle(); });
         std::unique_ptr<Transfer> transfer = std::move(*found);
         running_.erase(found);
         // It is judged before it is removed, which closes the connection of an interrupted one.
@@ -127,7 +128,8 @@ private:
         const Transfer::Clock::time_point now = Transfer::Clock::now();
         if (running_.size() < settings_.at_once) {
             for (const auto& transfer : waiting_) {
-                pause = std::min(pause, std::max(std::chrono::ceil<std::chrono::milliseconds>(transfer->due() - now), {}));
+                pause = std::min(
+                    pause, std::max(std::chrono::ceil<std::chrono::milliseconds>(transfer->due() - now), {}));
             }
         }
         return static_cast<int>(pause.count());
@@ -145,7 +147,8 @@ private:
     std::thread thread_;
 };
 
-Fetcher::Fetcher(const WebCache& cache, const FetchSettings& settings) : thread_(std::make_unique<Thread>(cache, settings)) {}
+Fetcher::Fetcher(const WebCache& cache, const FetchSettings& settings)
+    : thread_(std::make_unique<Thread>(cache, settings)) {}
 Fetcher::~Fetcher() = default;
 
 std::future<Fetched> Fetcher::request(FetchRequest request) { return thread_->request(std::move(request)); }
@@ -155,7 +158,8 @@ double Fetcher::share() const {
     const std::uint64_t expected = tally.expected_bytes, got = tally.got_bytes;
     const std::size_t asked = tally.asked, sized = tally.sized;
     if (asked == 0) { return 0.0; }
-    const double of_sized = expected == 0 ? 1.0 : std::min(1.0, static_cast<double>(got) / static_cast<double>(expected));
+    const double of_sized =
+        expected == 0 ? 1.0 : std::min(1.0, static_cast<double>(got) / static_cast<double>(expected));
     return of_sized * static_cast<double>(sized) / static_cast<double>(asked);
 }
 

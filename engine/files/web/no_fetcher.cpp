@@ -7,7 +7,9 @@ namespace binosplat {
 class Fetcher::Thread {};
 
 Fetcher::Fetcher(const WebCache&, const FetchSettings&) {
-    fail("scenes from http and https addresses cannot be opened: this build has no network; download the file, or build with libcurl");
+    fail(
+        "scenes from http and https addresses cannot be opened: this build has no network; download the "
+        "file, or build with libcurl");
 }
 Fetcher::~Fetcher() = default;
 std::future<Fetched> Fetcher::request(FetchRequest) { return {}; }

@@ -26,7 +26,8 @@ constexpr std::size_t kLongestVersion = 256;
 constexpr long kOk = 200, kPartial = 206, kNoSuchRange = 416;
 
 bool isPlain(const std::string& text) {
-    return text.size() <= kLongestVersion && std::ranges::all_of(text, [](unsigned char letter) { return std::isprint(letter) != 0; });
+    return text.size() <= kLongestVersion &&
+           std::ranges::all_of(text, [](unsigned char letter) { return std::isprint(letter) != 0; });
 }
 
 // Another attempt may find the server in a better state.
@@ -36,29 +37,39 @@ bool isBusy(long status) {
 }
 
 bool isCut(CURLcode code) {
-    constexpr std::array kCut{CURLE_PARTIAL_FILE, CURLE_RECV_ERROR,   CURLE_SEND_ERROR,         CURLE_GOT_NOTHING,
-                              CURLE_HTTP2,        CURLE_HTTP2_STREAM, CURLE_OPERATION_TIMEDOUT, CURLE_SSL_CONNECT_ERROR};
+    constexpr std::array kCut{
+        CURLE_PARTIAL_FILE, CURLE_RECV_ERROR,   CURLE_SEND_ERROR,         CURLE_GOT_NOTHING,
+        CURLE_HTTP2,        CURLE_HTTP2_STREAM, CURLE_OPERATION_TIMEDOUT, CURLE_SSL_CONNECT_ERROR};
     return std::ranges::find(kCut, code) != kCut.end();
 }
 
 bool isNoServer(CURLcode code) {
-    return code == CURLE_COULDNT_RESOLVE_HOST || code == CURLE_COULDNT_RESOLVE_PROXY || code == CURLE_COULDNT_CONNECT;
+    return code == CURLE_COULDNT_RESOLVE_HOST || code == CURLE_COULDNT_RESOLVE_PROXY ||
+           code == CURLE_COULDNT_CONNECT;
 }
 
 std::string explainStatus(long status) {
     if (status == 404 || status == 410) {
-        return fmt::format("is not there (the server answers {}), expected the address of a scene file", status);
+        return fmt::format("is not there (the server answers {}), expected the address of a scene file",
+                           status);
     }
     if (status == 401 || status == 403) {
-        return fmt::format("may not be read (the server answers {}), expected an address that anybody may read", status);
+        return fmt::format(
+            "may not be read (the server answers {}), expected an address that anybody may read", status);
     }
-    return fmt::format("cannot be fetched (the server answers {}), expected the address of a scene file", status);
+    return fmt::format("cannot be fetched (the server answers {}), expected the address of a scene file",
+                       status);
 }
 
 }  // namespace
 
-Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTally& tally, FetchRequest request)
-    : cache_(cache), settings_(settings), tally_(tally), request_(std::move(request)), easy_(curl_easy_init()) {
+Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTally& tally,
+                   FetchRequest request)
+    : cache_(cache),
+      settings_(settings),
+      tally_(tally),
+      request_(std::move(request)),
+      easy_(curl_easy_init()) {
     if (easy_ == nullptr) { throw std::bad_alloc(); }
     const auto set = [&](CURLoption option, auto value) { curl_easy_setopt(easy_.get(), option, value); };
     // Redirects that are never followed: to a file of this machine, and from a secure address to an insecure
@@ -77,7 +88,9 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
     set(CURLOPT_NOSIGNAL, 1l);
     set(CURLOPT_BUFFERSIZE, kBufferBytes);
     set(CURLOPT_USERAGENT, "binosplat");
-    if (const std::string trusted = environment("SSL_CERT_FILE"); !trusted.empty()) { set(CURLOPT_CAINFO, trusted.c_str()); }
+    if (const std::string trusted = environment("SSL_CERT_FILE"); !trusted.empty()) {
+        set(CURLOPT_CAINFO, trusted.c_str());
+    }
     set(CURLOPT_ERRORBUFFER, error_.data());
     set(CURLOPT_WRITEFUNCTION, &Transfer::writeBody);
     set(CURLOPT_WRITEDATA, static_cast<void*>(this));
@@ -112,7 +125,8 @@ void Transfer::setHeaders() {
     } else {
         add("If-Range", version_.etag);
     }
-    curl_easy_setopt(easy_.get(), CURLOPT_RANGE, kept_bytes_ == 0 ? nullptr : fmt::format("{}-", kept_bytes_).c_str());
+    curl_easy_setopt(easy_.get(), CURLOPT_RANGE,
+                     kept_bytes_ == 0 ? nullptr : fmt::format("{}-", kept_bytes_).c_str());
     curl_easy_setopt(easy_.get(), CURLOPT_HTTPHEADER, headers.get());
     headers_ = std::move(headers);
 }
@@ -136,7 +150,8 @@ std::string Transfer::ipOfServer(const std::string& ip, int port) const {
     if (parseIp(host)) { return host; }
     if (host.ends_with('.')) { host.pop_back(); }
     constexpr std::string_view kHere = "localhost";
-    const bool is_here = host.size() >= kHere.size() && beginsWith(std::string_view(host).substr(host.size() - kHere.size()), kHere) &&
+    const bool is_here = host.size() >= kHere.size() &&
+                         beginsWith(std::string_view(host).substr(host.size() - kHere.size()), kHere) &&
                          (host.size() == kHere.size() || host[host.size() - kHere.size() - 1] == '.');
     if (is_here) { return "127.0.0.1"; }
     return part(CURLUPART_PORT) == std::to_string(port) ? ip : "";
@@ -150,8 +165,12 @@ int Transfer::checkServer(void* transfer, char* ip, char*, int port, int) {
         const bool is_private = !server.empty() && self.settings_.is_private(server);
         if (!self.tally_.began_private) { self.tally_.began_private = is_private; }
         if (!is_private || *self.tally_.began_private) { return CURL_PREREQFUNC_OK; }
-        self.refused_ = fmt::format("leads from the public web to {}, which is on a private network, expected a public server", server);
-    } catch (const std::exception& error) { self.refused_ = fmt::format("cannot be fetched ({})", error.what()); }
+        self.refused_ = fmt::format(
+            "leads from the public web to {}, which is on a private network, expected a public server",
+            server);
+    } catch (const std::exception& error) {
+        self.refused_ = fmt::format("cannot be fetched ({})", error.what());
+    }
     return CURL_PREREQFUNC_ABORT;
 }
 
@@ -187,7 +206,8 @@ std::size_t Transfer::take(const char* data, std::size_t bytes) {
         return 0;
     }
     if (file_->sizeBytes() + bytes > request_.most_bytes) {
-        refused_ = fmt::format("is longer than {} bytes, which is the most that is taken", request_.most_bytes);
+        refused_ =
+            fmt::format("is longer than {} bytes, which is the most that is taken", request_.most_bytes);
     } else if (exceedsCache(file_->sizeBytes() + bytes)) {
         refused_ = fmt::format("is longer than {}", cacheLimit());
     }
@@ -220,7 +240,9 @@ std::optional<Transfer::ContentRange> Transfer::contentRange() const {
 
 bool Transfer::isTheRest() const {
     const std::optional<ContentRange> range = contentRange();
-    if (!range || isEncoded() || range->first != kept_bytes_ || header("ETag") != version_.etag) { return false; }
+    if (!range || isEncoded() || range->first != kept_bytes_ || header("ETag") != version_.etag) {
+        return false;
+    }
     return is_sized_ ? range->total == 0 || range->total == expected_bytes_ : range->total > 0;
 }
 
@@ -240,7 +262,8 @@ bool Transfer::beginBody() {
     } else if (exceedsCache(expected)) {
         refused_ = fmt::format("is {} bytes long, more than {}", expected, cacheLimit());
     } else if (expected > file_->roomBytes()) {
-        refused_ = fmt::format("is {} bytes long, but the cache's disk has only {} free; free some space", expected, file_->roomBytes());
+        refused_ = fmt::format("is {} bytes long, but the cache's disk has only {} free; free some space",
+                               expected, file_->roomBytes());
     }
     if (!refused_.empty()) { return false; }
     is_sized_ = true;
@@ -271,10 +294,13 @@ bool Transfer::isEncoded() const {
     return is_unpacked_ && !encoding.empty() && encoding != "identity";
 }
 
-bool Transfer::exceedsCache(std::uint64_t bytes) const { return settings_.cache_bytes > 0 && bytes > settings_.cache_bytes; }
+bool Transfer::exceedsCache(std::uint64_t bytes) const {
+    return settings_.cache_bytes > 0 && bytes > settings_.cache_bytes;
+}
 
 std::string Transfer::cacheLimit() const {
-    return fmt::format("the cache's {} bytes; a larger --cache-limit takes it, and 0, which keeps nothing", settings_.cache_bytes);
+    return fmt::format("the cache's {} bytes; a larger --cache-limit takes it, and 0, which keeps nothing",
+                       settings_.cache_bytes);
 }
 
 long Transfer::status() const {
@@ -309,7 +335,8 @@ FileVersion Transfer::versionSent() const {
 bool Transfer::finish(CURLcode code, bool is_stalled) {
     // Some servers state an encoding that is none (UTF-8, aws-chunked), or one that they did not apply: ask
     // again, and take the bytes as they come.
-    if (code == CURLE_BAD_CONTENT_ENCODING && got_bytes_ == kept_bytes_ && std::exchange(is_unpacked_, false)) {
+    if (code == CURLE_BAD_CONTENT_ENCODING && got_bytes_ == kept_bytes_ &&
+        std::exchange(is_unpacked_, false)) {
         --attempts_;
         return false;
     }
@@ -328,11 +355,14 @@ std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
     using Kind = Fetched::Kind;
     const long answer = status();
     // An answer that curl considers complete, but that ended before it began.
-    if (code == CURLE_OK && answer == kOk && (file_ == nullptr || kept_bytes_ > 0) && !saysLength()) { code = CURLE_GOT_NOTHING; }
+    if (code == CURLE_OK && answer == kOk && (file_ == nullptr || kept_bytes_ > 0) && !saysLength()) {
+        code = CURLE_GOT_NOTHING;
+    }
     if (!refused_.empty()) { return Fetched{Kind::kRefused, refused_}; }
     const bool is_rest = answer == kPartial && kept_bytes_ > 0 && isTheRest();
     // A resumed file is as long as the server first said, whatever it says about the rest.
-    if (code == CURLE_OK && is_rest && file_->sizeBytes() != (is_sized_ ? expected_bytes_ : contentRange()->total)) {
+    if (code == CURLE_OK && is_rest &&
+        file_->sizeBytes() != (is_sized_ ? expected_bytes_ : contentRange()->total)) {
         code = CURLE_PARTIAL_FILE;
     }
     if (!is_stalled && code == CURLE_OK && (answer == kOk || is_rest)) {
@@ -357,13 +387,18 @@ std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
         }
         curl_off_t asked_s = 0;
         if (is_answer) { curl_easy_getinfo(easy_.get(), CURLINFO_RETRY_AFTER, &asked_s); }
-        const bool is_too_long = asked_s > std::chrono::duration_cast<std::chrono::seconds>(settings_.most_pause).count();
-        if (is_too_long) { return Fetched{Kind::kUnreachable, fmt::format("the server asks to wait {} s; try again then", asked_s)}; }
+        const bool is_too_long =
+            asked_s > std::chrono::duration_cast<std::chrono::seconds>(settings_.most_pause).count();
+        if (is_too_long) {
+            return Fetched{Kind::kUnreachable,
+                           fmt::format("the server asks to wait {} s; try again then", asked_s)};
+        }
         const auto own = settings_.first_pause * (1 << std::min(attempts_ - 1, 10));
         const auto pause = std::max<std::chrono::milliseconds>(own, std::chrono::seconds(asked_s));
         due_ = Clock::now() + std::min(pause, settings_.most_pause);
         if (attempts_ < settings_.attempts) { return std::nullopt; }
-        return Fetched{Kind::kUnreachable, fmt::format("{}, after {} attempts; try again later", reason, attempts_)};
+        return Fetched{Kind::kUnreachable,
+                       fmt::format("{}, after {} attempts; try again later", reason, attempts_)};
     }
     return Fetched{!is_answer && isNoServer(code) ? Kind::kUnreachable : Kind::kRefused, reason};
 }
@@ -372,19 +407,28 @@ std::string Transfer::describe(CURLcode code, bool is_stalled) const {
     const char* const detail = error_[0] != '\0' ? error_.data() : curl_easy_strerror(code);
     if (is_stalled) { return fmt::format("the server has fallen silent after {} bytes", got_bytes_); }
     if (code == CURLE_OK || code == CURLE_WRITE_ERROR) {
-        return isBusy(status()) ? fmt::format("the server cannot serve it (it answers {})", status()) : explainStatus(status());
+        return isBusy(status()) ? fmt::format("the server cannot serve it (it answers {})", status())
+                                : explainStatus(status());
     }
-    if (isNoServer(code)) { return fmt::format("cannot be reached ({}); look at the network and at the address", detail); }
+    if (isNoServer(code)) {
+        return fmt::format("cannot be reached ({}); look at the network and at the address", detail);
+    }
     if (code == CURLE_PARTIAL_FILE || (isCut(code) && got_bytes_ > 0)) {
-        return fmt::format("was cut off after {}{} bytes", got_bytes_, expected_bytes_ > 0 ? fmt::format(" of {}", expected_bytes_) : "");
+        return fmt::format("was cut off after {}{} bytes", got_bytes_,
+                           expected_bytes_ > 0 ? fmt::format(" of {}", expected_bytes_) : "");
     }
     if (isCut(code)) { return fmt::format("the server hangs up ({})", detail); }
     if (code == CURLE_UNSUPPORTED_PROTOCOL && status() / 100 == 3) {
-        return "redirects to an address that may not be followed, expected one of http or https, and of https after https";
+        return "redirects to an address that may not be followed, expected one of http or https, and of "
+               "https after https";
     }
-    if (code == CURLE_TOO_MANY_REDIRECTS) { return fmt::format("redirects more than {} times, expected a file", kMostRedirects); }
+    if (code == CURLE_TOO_MANY_REDIRECTS) {
+        return fmt::format("redirects more than {} times, expected a file", kMostRedirects);
+    }
     if (code == CURLE_PEER_FAILED_VERIFICATION) {
-        return fmt::format("the server's certificate is not valid ({}), so it may be another server; expected a valid one", detail);
+        return fmt::format(
+            "the server's certificate is not valid ({}), so it may be another server; expected a valid one",
+            detail);
     }
     return fmt::format("cannot be fetched ({}), expected the address of a scene file", detail);
 }

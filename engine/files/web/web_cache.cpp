@@ -68,12 +68,15 @@ std::optional<FileStamp> stampOf(const fs::path& path) {
 fs::path with(fs::path stem, const char* extension) { return stem += extension; }
 
 std::int64_t secondsNow() {
-    return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    return std::chrono::duration_cast<std::chrono::seconds>(
+               std::chrono::system_clock::now().time_since_epoch())
+        .count();
 }
 
 }  // namespace
 
-IncomingFile::IncomingFile(fs::path path, File file) : path_(std::move(path)), file_(std::move(file)), room_(path_.parent_path()) {}
+IncomingFile::IncomingFile(fs::path path, File file)
+    : path_(std::move(path)), file_(std::move(file)), room_(path_.parent_path()) {}
 
 IncomingFile::~IncomingFile() {
     file_.reset();
@@ -82,7 +85,9 @@ IncomingFile::~IncomingFile() {
 }
 
 bool IncomingFile::write(const char* data, std::size_t bytes) {
-    if (!room_.holds(size_bytes_, bytes) || std::fwrite(data, 1, bytes, file_.get()) != bytes) { return false; }
+    if (!room_.holds(size_bytes_, bytes) || std::fwrite(data, 1, bytes, file_.get()) != bytes) {
+        return false;
+    }
     size_bytes_ += bytes;
     return true;
 }
@@ -90,7 +95,8 @@ bool IncomingFile::write(const char* data, std::size_t bytes) {
 WebCache::WebCache(fs::path folder) : folder_(std::move(folder)) {
     std::error_code error;
     if (fs::create_directories(folder_, error)) { fs::permissions(folder_, fs::perms::owner_all, error); }
-    check(fs::is_directory(folder_, error), "{}: cannot be made a folder for scenes from the web, expected a place to write to",
+    check(fs::is_directory(folder_, error),
+          "{}: cannot be made a folder for scenes from the web, expected a place to write to",
           folder_.string());
 }
 
@@ -99,15 +105,19 @@ fs::path WebCache::stemOf(const std::string& address) const { return folder_ / f
 std::unique_ptr<IncomingFile> WebCache::begin(const std::string& address) const {
     for (int attempt = 0; attempt < kMostNames; ++attempt) {
         fs::path path = with(stemOf(address), fmt::format("-{}-{}.part", processId(), attempt).c_str());
-        if (File file = createFile(path)) { return std::make_unique<IncomingFile>(std::move(path), std::move(file)); }
+        if (File file = createFile(path)) {
+            return std::make_unique<IncomingFile>(std::move(path), std::move(file));
+        }
         if (errno != EEXIST) { break; }
     }
     return nullptr;
 }
 
-void WebCache::keep(const std::string& address, std::unique_ptr<IncomingFile> file, const FileVersion& version) const {
+void WebCache::keep(const std::string& address, std::unique_ptr<IncomingFile> file,
+                    const FileVersion& version) const {
     const fs::path stem = stemOf(address);
-    check(std::fclose(file->file_.release()) == 0, "{}: cannot be kept in {}: {}", address, folder_.string(), std::strerror(errno));
+    check(std::fclose(file->file_.release()) == 0, "{}: cannot be kept in {}: {}", address, folder_.string(),
+          std::strerror(errno));
     const std::optional<FileStamp> stamp = stampOf(file->path_);
     std::error_code error;
     if (stamp) { fs::rename(file->path_, with(stem, kData), error); }
@@ -145,13 +155,15 @@ void WebCache::trim(std::uint64_t most_bytes) const noexcept {
     try {
         std::error_code error;
         std::vector<fs::path> files;
-        for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+        for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
+             entry.increment(error)) {
             files.push_back(entry->path());
         }
         std::vector<Copy> copies;
         std::uint64_t total_bytes = 0;
         for (const fs::path& path : files) {
-            const fs::path note = fs::path(path).replace_extension(kNote), data = fs::path(path).replace_extension(kData);
+            const fs::path note = fs::path(path).replace_extension(kNote),
+                           data = fs::path(path).replace_extension(kData);
             const auto used = fs::last_write_time(path, error);
             if (error) { continue; }
             if (path.extension() == kNote && fs::exists(data, error)) {
@@ -162,7 +174,8 @@ void WebCache::trim(std::uint64_t most_bytes) const noexcept {
             // Bytes are put in place before their note, and a note that has lost its bytes does not get
             // others.
             const bool is_copy = path.extension() == kData && fs::exists(note, error);
-            const bool is_on_its_way = path.extension() != kNote && used > fs::file_time_type::clock::now() - kOnItsWay;
+            const bool is_on_its_way =
+                path.extension() != kNote && used > fs::file_time_type::clock::now() - kOnItsWay;
             if (!is_copy && !is_on_its_way) { fs::remove(path, error); }
         }
         std::ranges::sort(copies, {}, &Copy::used);

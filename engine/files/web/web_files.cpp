@@ -24,7 +24,9 @@ constexpr std::chrono::milliseconds kLook(50);
 // Another program may remove what was just fetched, but hardly again and again.
 constexpr int kMostTurns = 3;
 
-std::string dateOf(std::int64_t seconds) { return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds))); }
+std::string dateOf(std::int64_t seconds) {
+    return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds)));
+}
 
 FetchSettings withCacheLimit(const WebSettings& settings) {
     FetchSettings fetch = settings.fetch;
@@ -43,7 +45,9 @@ WebFiles::WebFiles(const std::string& address, const WebSettings& settings, Prog
     : address_(parseAddress(address)),
       waiting_(std::move(waiting)),
       cache_bytes_(settings.cache_bytes),
-      own_folder_(settings.cache_folder.empty() ? std::optional(TemporaryFolder("binosplat-web-", "scenes from the web")) : std::nullopt),
+      own_folder_(settings.cache_folder.empty()
+                      ? std::optional(TemporaryFolder("binosplat-web-", "scenes from the web"))
+                      : std::nullopt),
       folder_(own_folder_ ? own_folder_->path() : settings.cache_folder),
       cache_(folder_),
       fetcher_(cache_, withCacheLimit(settings)) {}
@@ -72,7 +76,9 @@ void WebFiles::settle(const std::string& address) {
     }
     Fetched fetched = found->second.get();
     asked_.erase(found);
-    if (fetched.kind == Fetched::Kind::kNew) { cache_.keep(address, std::move(fetched.file), fetched.version); }
+    if (fetched.kind == Fetched::Kind::kNew) {
+        cache_.keep(address, std::move(fetched.file), fetched.version);
+    }
     const bool is_unreachable = fetched.kind == Fetched::Kind::kUnreachable;
     const std::optional<KeptCopy> copy = is_unreachable ? cache_.find(address) : std::nullopt;
     if (fetched.kind == Fetched::Kind::kRefused || (is_unreachable && !copy)) {
@@ -82,8 +88,8 @@ void WebFiles::settle(const std::string& address) {
     if (is_unreachable) {
         is_unreachable_ = true;
         if (stale_.empty()) {
-            stale_ = fmt::format("{}: {}; taken as it was on {}", address, fetched.reason.substr(0, fetched.reason.find(';')),
-                                 dateOf(copy->fetched_s));
+            stale_ = fmt::format("{}: {}; taken as it was on {}", address,
+                                 fetched.reason.substr(0, fetched.reason.find(';')), dateOf(copy->fetched_s));
         }
     }
     settled_.insert(address);
@@ -104,11 +110,14 @@ std::unique_ptr<InputFile> WebFiles::open(const std::string& name, std::uint64_t
         }
         settled_.erase(address);
     }
-    fail("{}: is removed from the cache in {} before it can be read, expected more space there (--cache-limit)", address, folder_.string());
+    fail(
+        "{}: is removed from the cache in {} before it can be read, expected more space there "
+        "(--cache-limit)",
+        address, folder_.string());
 }
 
-Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,
-                            const LevelChoice& level, const WebSettings& settings) {
+Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes,
+                            const Progress& progress, const LevelChoice& level, const WebSettings& settings) {
     if (!isAddress(source)) { return loadScene(source, builtin_splats, &notes, progress, level); }
     double fetched = 0.0, read = 0.0;
     const auto show = [&] {
@@ -126,7 +135,8 @@ Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_spl
     WebFiles files(source, settings, fetching);
     Scene scene = loadScene(files.open(""), notes, progress ? Progress(reading) : Progress(), level);
     if (isPlainHttp(source)) {
-        notes.lines.push_back(fmt::format("{}: came by http, so others on the way could read and change it; https is safer", source));
+        notes.lines.push_back(fmt::format(
+            "{}: came by http, so others on the way could read and change it; https is safer", source));
     }
     notes.stale = files.stale();
     if (!notes.stale.empty()) { notes.lines.push_back(notes.stale); }

@@ -68,7 +68,7 @@ private:
 };
 
 // Loads `source`, which is an address or anything that loadScene takes.
-Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,
-                            const LevelChoice& level, const WebSettings& settings);
+Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes,
+                            const Progress& progress, const LevelChoice& level, const WebSettings& settings);
 
 }  // namespace binosplat

@@ -14,7 +14,8 @@ Eye eyeOf(glm::uvec2 size_px) { return {{}, intrinsicsFromAngles({-0.9, 0.7, 0.8
 
 Eye turned(const Eye& eye, double degrees, const glm::dvec3& axis) {
     Eye other = eye;
-    other.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
+    other.world_from_camera.orientation =
+        eye.world_from_camera.orientation * glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
     return other;
 }
 
@@ -22,7 +23,8 @@ Eye turned(const Eye& eye, double degrees, const glm::dvec3& axis) {
 glm::dvec2 placeIn(const Eye& picture, const Eye& view, const glm::dvec2& place_px) {
     const Intrinsics &k = picture.intrinsics, &l = view.intrinsics;
     const glm::dvec3 ray = glm::conjugate(picture.world_from_camera.orientation) *
-                           (view.world_from_camera.orientation * glm::dvec3((place_px.x - l.cx) / l.fx, (place_px.y - l.cy) / l.fy, 1.0));
+                           (view.world_from_camera.orientation *
+                            glm::dvec3((place_px.x - l.cx) / l.fx, (place_px.y - l.cy) / l.fy, 1.0));
     return {k.fx * ray.x / ray.z + k.cx, k.fy * ray.y / ray.z + k.cy};
 }
 
@@ -30,7 +32,8 @@ TEST_CASE("a picture covers turns within its margin with the view's own pixels, 
     const Eye view = eyeOf({400, 300}), picture = coverOf(view, kMargin);
     CHECK(picture.intrinsics.fx == view.intrinsics.fx);
     CHECK((picture.size_px - view.size_px) % 16u == glm::uvec2(0));
-    for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0)}) {
+    for (const glm::dvec3 axis :
+         {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0)}) {
         CHECK(covers(picture, turned(view, 0.9 * kMarginDegrees, axis)));
         CHECK_FALSE(covers(picture, turned(view, 2.5 * kMarginDegrees, axis)));
     }
@@ -43,10 +46,13 @@ TEST_CASE("all that a view shows lies in tiles that are not hidden, and most of 
     const glm::uvec2 tiles = tilesOf(picture.size_px), view_tiles = tilesOf(eye.size_px);
     // A lens that shows only the middle columns.
     std::vector<std::uint8_t> lens(std::size_t{view_tiles.x} * view_tiles.y, 0);
-    for (std::size_t t = 0; t < lens.size(); ++t) { lens[t] = t % view_tiles.x < 4 || t % view_tiles.x > 8 ? 1 : 0; }
+    for (std::size_t t = 0; t < lens.size(); ++t) {
+        lens[t] = t % view_tiles.x < 4 || t % view_tiles.x > 8 ? 1 : 0;
+    }
     for (const bool has_lens : {false, true}) {
         const Eye view = turned(eye, 9.0, {0.3, 1.0, 0.8});
-        const auto hidden = hiddenFrom(view, picture, has_lens ? std::span<const std::uint8_t>(lens) : std::span<const std::uint8_t>());
+        const auto hidden = hiddenFrom(
+            view, picture, has_lens ? std::span<const std::uint8_t>(lens) : std::span<const std::uint8_t>());
         std::size_t lost = 0;
         for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
             for (std::uint32_t x = 0; x < eye.size_px.x; ++x) {
@@ -62,7 +68,9 @@ TEST_CASE("all that a view shows lies in tiles that are not hidden, and most of 
     }
 }
 
-TEST_CASE("axes stay until the view leaves the picture, then move ahead of a head that turns; places follow the eyes") {
+TEST_CASE(
+    "axes stay until the view leaves the picture, then move ahead of a head that turns; places follow the "
+    "eyes") {
     StayingAxes axes(kMargin);
     std::array<Eye, 2> views = stereoPair(eyeOf({200, 150}), 0.063);
     std::vector<std::size_t> moves;
@@ -91,12 +99,14 @@ TEST_CASE("axes stay until the view leaves the picture, then move ahead of a hea
     CHECK(covers(axes.follow(views)[0], views[0]));
 }
 
-TEST_CASE("a compositor shows a picture with the view's axes as it is, and one that is turned to a filter's accuracy") {
+TEST_CASE(
+    "a compositor shows a picture with the view's axes as it is, and one that is turned to a filter's "
+    "accuracy") {
     const Eye view = eyeOf({120, 90}), picture = coverOf(view, kMargin);
     const auto wave = [&](const Eye& eye, double x, double y) {
-        const glm::dvec3 ray =
-            glm::normalize(eye.world_from_camera.orientation *
-                           glm::dvec3((x - eye.intrinsics.cx) / eye.intrinsics.fx, (y - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0));
+        const glm::dvec3 ray = glm::normalize(eye.world_from_camera.orientation *
+                                              glm::dvec3((x - eye.intrinsics.cx) / eye.intrinsics.fx,
+                                                         (y - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0));
         return static_cast<float>(0.5 + 0.3 * std::sin(20.0 * ray.x) * std::cos(15.0 * ray.y));
     };
     const auto draw = [&](const Eye& eye) {
@@ -115,7 +125,8 @@ TEST_CASE("a compositor shows a picture with the view's axes as it is, and one t
     CHECK(compare(draw(view), draw(other)).psnrDb() < 25.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same bytes, and all the rest is rendered") {
+TEST_CASE_FIXTURE(
+    Gpu, "while the head turns, what was seen before is the same bytes, and all the rest is rendered") {
     const ViewedScene view = test::viewBuiltin("builtin:atelier", {208, 176}, 20000);
     KeptFrame frame(context(), view.scene);
     FrameSettings settings;
@@ -146,7 +157,8 @@ TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same b
                 const std::size_t tile = test::tileOf(i, now.size_px);
                 if (kinds[tile] != 0 || hidden_before[e][tile] != 0) { continue; }
                 ++kept;
-                other += std::equal(&now.values[4 * i], &now.values[4 * i] + 4, &before[e].values[4 * i]) ? 0 : 1;
+                other +=
+                    std::equal(&now.values[4 * i], &now.values[4 * i] + 4, &before[e].values[4 * i]) ? 0 : 1;
             }
             CHECK(other == 0);
             CHECK((step == 0 || kept > now.pixelCount() / 3));

@@ -8,8 +8,10 @@ SUITE(bench_runs) {
 // A short walk, and a camera whose photograph is a render of the scene, seen by one eye in the middle.
 struct Walk : Bench {
     Walk() {
-        write("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
-        write("c.json", R"([{"img_name": "a", "width": 48, "height": 40, "fx": 48, "fy": 48, "position": [0,0,0],
+        write("m.csv",
+              "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
+        write("c.json",
+              R"([{"img_name": "a", "width": 48, "height": 40, "fx": 48, "fy": 48, "position": [0,0,0],
                              "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
         writeFloats(path / "w.bin", makeLpipsWeights(9));
     }
@@ -19,9 +21,11 @@ struct Walk : Bench {
 SCRIPT(bench_runs, "app/bench/bench_runs") {
     const Walk bench;
     ScriptHost host = programIn(bench);
-    const std::string motion = "--motion m.csv --from 0.1 --seconds 0.1 --rate 40 --out out", extension = host.names.at("DISPLAYED");
+    const std::string motion = "--motion m.csv --from 0.1 --seconds 0.1 --rate 40 --out out",
+                      extension = host.names.at("DISPLAYED");
     host.names["MOTION"] = "bench builtin:step-edge --size 48x48 --config b.toml " + motion;
-    host.names["PHOTOS"] = "bench builtin:step-edge --cameras c.json --config b.toml --photos photos --out out";
+    host.names["PHOTOS"] =
+        "bench builtin:step-edge --cameras c.json --config b.toml --photos photos --out out";
     host.names["PHOTOGRAPH"] = "> render builtin:step-edge --cameras c.json --mode mono --out photo";
     host.names["HUNG"] = fmt::format("$ mkdir photos && mv photo/mono{0} photos/a{0}", extension);
     host.verbs["front"] = [&](const std::string&) {
@@ -31,10 +35,14 @@ SCRIPT(bench_runs, "app/bench/bench_runs") {
     runScript(host);
 }
 
-TEST_CASE("of frames that may take next to nothing the controller lowers resolution and bound, and says so of each") {
+TEST_CASE(
+    "of frames that may take next to nothing the controller lowers resolution and bound, and says so of "
+    "each") {
     const Walk bench;
     bench.write("b.toml", "[bench]\nmodes = [\"temporal\"]\nwarm-up = 0\n");
-    bench.go("bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv --rate 60 --frame-time 0.001 --out out");
+    bench.go(
+        "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv --rate 60 --frame-time 0.001 "
+        "--out out");
     std::istringstream csv(bench.bytesOf("out/motion.csv"));
     std::vector<std::string> ends;
     for (std::string row; std::getline(csv, row);) {

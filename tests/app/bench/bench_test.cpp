@@ -33,7 +33,9 @@ BenchResult withError(double total_ms, double mean_square) {
     return result;
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 TEST_CASE("a level fits if its splats do, which take less memory with fewer colours and as discs") {
     const auto choose = [](const std::string& options) {
@@ -55,16 +57,19 @@ TEST_CASE("a level fits if its splats do, which take less memory with fewer colo
 TEST_CASE("every config of the configs folder is a plan, whose scenes the command line may replace") {
     int count = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(kConfigs)) {
-        const BenchPlan plan = planBench(parse<BenchOptions>("bench --out out --config " + entry.path().string()));
+        const BenchPlan plan =
+            planBench(parse<BenchOptions>("bench --out out --config " + entry.path().string()));
         CHECK(!plan.scenes.empty());
         CHECK(!plan.series.empty());
         ++count;
     }
     CHECK(count > 0);
     const std::string demo = (kConfigs / "demo.toml").string();
-    CHECK(planBench(parse<BenchOptions>("bench a.ply b.ply --out out --config " + demo)).scenes == Names{"a.ply", "b.ply"});
+    CHECK(planBench(parse<BenchOptions>("bench a.ply b.ply --out out --config " + demo)).scenes ==
+          Names{"a.ply", "b.ply"});
     const Bench bench;
-    CHECK(methodsOf(bench.plan("", "a.ply")) == Names{"two-pass", "shared", "reproject", "paper", "predicted"});
+    CHECK(methodsOf(bench.plan("", "a.ply")) ==
+          Names{"two-pass", "shared", "reproject", "paper", "predicted"});
     bench.checkRefused("bench --out out", 2, "SCENE");
     bench.checkRefused("bench missing.ply --out out", 1, "missing.ply");
     CHECK_FALSE(bench.holds("out"));
@@ -74,7 +79,8 @@ TEST_CASE("methods sweep their settings, and views draw a scene's splats in seve
     const Bench bench;
     const BenchOptions options = bench.options(
         "[bench]\nscenes = [\"builtin:fence\"]\ntwin = true\nscores = [\"psnr\"]\n[stereo]\nmargin = 16\n"
-        "[[methods]]\nname = \"p\"\nmode = \"predicted\"\nbudget = [0, 0.5]\ndepth = [\"mean\", \"sum\"]\ngap_px = 3\n"
+        "[[methods]]\nname = \"p\"\nmode = \"predicted\"\nbudget = [0, 0.5]\ndepth = [\"mean\", "
+        "\"sum\"]\ngap_px = 3\n"
         "order = \"distance\"\n"
         "[[methods]]\nname = \"letter\"\nmode = \"paper\"\nresampling = \"forward\"\nper_eye = true\n"
         "[[views]]\nname = \"whole\"\nscene = [\"a.ply\", \"b\"]\n"
@@ -82,10 +88,11 @@ TEST_CASE("methods sweep their settings, and views draw a scene's splats in seve
         "[[views]]\nname = \"near\"\nscene = \"b\"\neye = [1, 2, 3]\nfov_x = 90\nnear = 0.5\n"
         "[[views]]\nname = \"dimmed\"\nscene = \"b\"\nantialiased = true\n");
     const BenchPlan plan = planBench(options);
-    CHECK(methodsOf(plan) == Names{"two-pass", "shared", "p budget=0 depth=mean", "p budget=0 depth=sum", "p budget=0.5 depth=mean",
-                                   "p budget=0.5 depth=sum", "letter", "mono"});
+    CHECK(methodsOf(plan) == Names{"two-pass", "shared", "p budget=0 depth=mean", "p budget=0 depth=sum",
+                                   "p budget=0.5 depth=mean", "p budget=0.5 depth=sum", "letter", "mono"});
     const StereoOptions &swept = plan.methods[4].stereo, &letter = plan.methods[6].stereo;
-    CHECK(these(swept.warp.budget, swept.warp.gap_px, swept.order, swept.warp.margin_px) == these(0.5, 3, Order::kDistance, 16));
+    CHECK(these(swept.warp.budget, swept.warp.gap_px, swept.order, swept.warp.margin_px) ==
+          these(0.5, 3, Order::kDistance, 16));
     CHECK_FALSE(swept.warp.forward);
     CHECK_FALSE(swept.per_eye);
     CHECK(letter.warp.forward);
@@ -95,14 +102,17 @@ TEST_CASE("methods sweep their settings, and views draw a scene's splats in seve
     const auto viewsIn = [&](const std::string& scene) {
         std::string names;
         for (const DrawnViews& drawn : viewsOf(plan, scene, options.run)) {
-            names += drawn.run.load.flatten ? "flattened:" : drawn.run.load.antialiased ? "antialiased:" : "trained:";
+            names += drawn.run.load.flatten       ? "flattened:"
+                     : drawn.run.load.antialiased ? "antialiased:"
+                                                  : "trained:";
             for (const BenchView& view : drawn.views) { names += " " + view.name; }
             names += "; ";
         }
         return names;
     };
     CHECK(these(viewsIn("some/b"), viewsIn("/some/where/a.ply"), viewsIn("builtin:fence")) ==
-          these("trained: whole near; flattened: flat; antialiased: dimmed; ", "trained: whole; ", "trained: ; "));
+          these("trained: whole near; flattened: flat; antialiased: dimmed; ", "trained: whole; ",
+                "trained: ; "));
     const RunOptions near = viewsOf(plan, "b", options.run).at(0).views.at(1).run;
     CHECK(these(near.camera.near, near.camera.eye) == these(0.5, glm::dvec3(1.0, 2.0, 3.0)));
 }
@@ -113,27 +123,35 @@ TEST_CASE("size, camera, headset and repeats of the command line take the place 
     const std::string sizes = fence + "[[series]]\nname = \"a\"\nsizes = [\"64x48\", \"128x96\"]\n";
     CHECK(bench.plan(sizes).series.at(0).sizes_px == std::vector{glm::uvec2(64, 48), glm::uvec2(128, 96)});
     CHECK(bench.plan(sizes, "--size 32x16").series.at(0).sizes_px == std::vector{glm::uvec2(32, 16)});
-    CHECK(these(bench.plan(fence + "repeats = 7\n").repeats, bench.plan(fence + "repeats = 7\n", "--repeats 3").repeats) == these(7, 3));
+    CHECK(these(bench.plan(fence + "repeats = 7\n").repeats,
+                bench.plan(fence + "repeats = 7\n", "--repeats 3").repeats) == these(7, 3));
     // The series and views start from the config's own camera.
-    const std::string camera = "[camera]\nsize = \"256x256\"\neye = [0, 0, -1]\n" + fence +
-                               "headsets = [\"quest2\", \"index\"]\n[[series]]\nname = \"a\"\nsizes = \"64x48\"\n"
-                               "[[series]]\nname = \"b\"\n[[views]]\nname = \"near\"\nfov_x = 90\n";
+    const std::string camera =
+        "[camera]\nsize = \"256x256\"\neye = [0, 0, -1]\n" + fence +
+        "headsets = [\"quest2\", \"index\"]\n[[series]]\nname = \"a\"\nsizes = \"64x48\"\n"
+        "[[series]]\nname = \"b\"\n[[views]]\nname = \"near\"\nfov_x = 90\n";
     const BenchPlan plan = bench.plan(camera);
     CHECK(these(plan.series.at(0).sizes_px, plan.series.at(1).sizes_px, plan.views.size(), plan.headsets) ==
-          these(std::vector{glm::uvec2(64, 48)}, std::vector{glm::uvec2(256, 256)}, 1, Names{"quest2", "index"}));
-    CHECK(these(bench.plan(camera, "--eye 1,1,1").views.empty(), bench.plan(camera, "--headset vive").headsets) == these(true, Names{""}));
+          these(std::vector{glm::uvec2(64, 48)}, std::vector{glm::uvec2(256, 256)}, 1,
+                Names{"quest2", "index"}));
+    CHECK(these(bench.plan(camera, "--eye 1,1,1").views.empty(),
+                bench.plan(camera, "--headset vive").headsets) == these(true, Names{""}));
 }
 
-TEST_CASE("LPIPS is among the scores where a config or the command line gives its weights, which nobody reads otherwise") {
+TEST_CASE(
+    "LPIPS is among the scores where a config or the command line gives its weights, which nobody reads "
+    "otherwise") {
     const Bench bench;
     writeFloats(bench.path / "w.bin", makeLpipsWeights(9));
-    const std::string head = "[bench]\nscenes = [\"builtin:fence\"]\n", weights = (bench.path / "w.bin").string();
+    const std::string head = "[bench]\nscenes = [\"builtin:fence\"]\n",
+                      weights = (bench.path / "w.bin").string();
     const BenchPlan alone = bench.plan(head + "scores = [\"lpips\"]\nlpips = \"w.bin\"\n");
     CHECK(alone.lpips.has_value());
     CHECK(alone.psnr);
     CHECK_FALSE(alone.ssim);
     CHECK_FALSE(alone.flip);
-    CHECK(these(bench.plan(head + "lpips = \"w.bin\"\n").lpips.has_value(), bench.plan(head).lpips.has_value()) == these(true, false));
+    CHECK(these(bench.plan(head + "lpips = \"w.bin\"\n").lpips.has_value(),
+                bench.plan(head).lpips.has_value()) == these(true, false));
     CHECK_FALSE(bench.plan(head + "scores = [\"psnr\"]\nlpips = \"none.bin\"\n").lpips.has_value());
     const BenchPlan none = bench.plan(head + "scores = [\"none\"]\n", "--lpips " + weights);
     CHECK(none.lpips.has_value());
@@ -142,19 +160,26 @@ TEST_CASE("LPIPS is among the scores where a config or the command line gives it
     CHECK(contains(bench.planError(head + "lpips = \"none.bin\"\n"), "none.bin: cannot be read"));
     CHECK(contains(bench.planError(head + "scores = [\"ssim\", \"lpips\"]\n"),
                    "b.toml:3: scores lists lpips; name its weights with --lpips FILE or `lpips` in [bench]"));
-    CHECK(contains(bench.planError(head, "--lpips " + (bench.path / "b.toml").string()), "b.toml: has 35 bytes, must have the 2898944"));
+    CHECK(contains(bench.planError(head, "--lpips " + (bench.path / "b.toml").string()),
+                   "b.toml: has 35 bytes, must have the 2898944"));
 }
 
-TEST_CASE("what a bench would measure twice under one name is refused, and so is a wrong config, with file and line") {
+TEST_CASE(
+    "what a bench would measure twice under one name is refused, and so is a wrong config, with file and "
+    "line") {
     const Bench bench;
     const std::string scene = "[bench]\nscenes = [\"builtin:fence\", \"b.ply\"]\n";
     for (const auto& [toml, error] : std::vector<std::pair<std::string, std::string>>{
              {"[bench]\nscenes = [\"a\", \"a\"]\n", "scene a is named twice, names must differ"},
-             {scene + "headsets = [\"index\", \"index\"]\n", "headset index is named twice, names must differ"},
-             {scene + "[[series]]\nname = \"s\"\n[[series]]\nname = \"s\"\n", "series s is named twice, names must differ"},
-             {scene + "[[methods]]\nname = \"m\"\nmode = \"paper\"\n[[methods]]\nname = \"m\"\nmode = \"mono\"\n",
+             {scene + "headsets = [\"index\", \"index\"]\n",
+              "headset index is named twice, names must differ"},
+             {scene + "[[series]]\nname = \"s\"\n[[series]]\nname = \"s\"\n",
+              "series s is named twice, names must differ"},
+             {scene +
+                  "[[methods]]\nname = \"m\"\nmode = \"paper\"\n[[methods]]\nname = \"m\"\nmode = \"mono\"\n",
               "method m is named twice, names must differ"},
-             {scene + "[[views]]\nname = \"v\"\n[[views]]\nname = \"v\"\nscene = \"b.ply\"\n", "view v is named twice, names must differ"},
+             {scene + "[[views]]\nname = \"v\"\n[[views]]\nname = \"v\"\nscene = \"b.ply\"\n",
+              "view v is named twice, names must differ"},
              {"[bench]\nrepeats = 0\n", "b.toml:2: repeats is 0, must be a whole number from 1"},
              {"[[series]]\nsizes = [\"8x8\"]\n", "b.toml:1: name is missing"}}) {
         CHECK_MESSAGE(contains(bench.planError(toml), error), toml);
@@ -166,16 +191,19 @@ TEST_CASE("what a bench would measure twice under one name is refused, and so is
 TEST_CASE("scenes have their own names, or their paths where those are equal") {
     BenchPlan plan;
     plan.scenes = {"a/x.ply", "b/x.ply", "c/y/", "builtin:fence"};
-    CHECK(these(nameIn(plan, "a/x.ply"), nameIn(plan, "c/y/"), nameIn(plan, "builtin:fence")) == these("a/x.ply", "y", "builtin:fence"));
+    CHECK(these(nameIn(plan, "a/x.ply"), nameIn(plan, "c/y/"), nameIn(plan, "builtin:fence")) ==
+          these("a/x.ply", "y", "builtin:fence"));
     plan.views = {{"whole", {"y"}, {}}};
     CHECK(viewsOf(plan, "c/y/", {}).at(0).views.at(0).name == "whole");
 }
 
 TEST_CASE("ratios compare modes at the same point only, by the medians of frames that took turns") {
-    CHECK(these(median({3.0}), median({5.0, 1.0, 3.0}), median({4.0, 1.0, 3.0, 100.0})) == these(3.0, 3.0, 3.5));
-    std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 4.0), makeResult("a", Mode::kShared, 1, 2.0),
-                                     makeResult("a", Mode::kShared, 2, 3.0), makeResult("b,c", Mode::kMono, 1, 3.0),
-                                     makeResult("a", Mode::kShared, 1, 5.0)};
+    CHECK(these(median({3.0}), median({5.0, 1.0, 3.0}), median({4.0, 1.0, 3.0, 100.0})) ==
+          these(3.0, 3.0, 3.5));
+    std::vector<BenchResult> results{
+        makeResult("a", Mode::kTwoPass, 1, 4.0), makeResult("a", Mode::kShared, 1, 2.0),
+        makeResult("a", Mode::kShared, 2, 3.0), makeResult("b,c", Mode::kMono, 1, 3.0),
+        makeResult("a", Mode::kShared, 1, 5.0)};
     results[4].backbone = "3DGS";  // the same scene as discs is a separate point
     compareModes(results);
     CHECK(!results[4].ratio_to_two_pass.has_value());
@@ -201,14 +229,18 @@ TEST_CASE("the passes of both eyes add up, and passes to stages") {
                            {{Role::kAffiliated, FrameStage::kChoose, "select"}, 128.0},
                            {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 256.0},
                            {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 512.0}};
-    CHECK(stagesOf(Mode::kPredicted, passes) ==
-          NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 272.0}, {"ROI choice", 224.0}, {"patch", 512.0}});
+    CHECK(stagesOf(Mode::kPredicted, passes) == NamedTimes{{"cull+sort", 3.0},
+                                                           {"dominant", 12.0},
+                                                           {"reprojection", 272.0},
+                                                           {"ROI choice", 224.0},
+                                                           {"patch", 512.0}});
     CHECK(stagesOf(Mode::kShared, {passes.back()}) == NamedTimes{{"affiliated", 512.0}});
     CHECK(byPass({passes[0], passes[3], passes[9]}) == NamedTimes{{"cull", 1.0}, {"rasterize", 520.0}});
 }
 
 TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
-    BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0), shared = makeResult("a", Mode::kShared, 1, 10.0);
+    BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0),
+                shared = makeResult("a", Mode::kShared, 1, 10.0);
     predicted.pass_ms = {{{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 1.0},
                          {{Role::kAffiliated, FrameStage::kChoose, "newcomers"}, 5.0},
                          {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 2.0}};
@@ -220,13 +252,16 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
     // 10 us a tile and 0.5 us a pair.
     std::vector<BenchResult> results{predicted, shared};
     compareModes(results);
-    CHECK(these(results[0].move_cost.value(), results[1].move_cost.has_value()) == these(doctest::Approx(20.0), false));
+    CHECK(these(results[0].move_cost.value(), results[1].move_cost.has_value()) ==
+          these(doctest::Approx(20.0), false));
     results[0].counters["tiles_weighed_as_moved"] = 0;
     compareModes(results);
     CHECK_FALSE(results[0].move_cost.has_value());
 }
 
-TEST_CASE("the front holds what is worth its time, and a picture that holds what is no number is not called equal") {
+TEST_CASE(
+    "the front holds what is worth its time, and a picture that holds what is no number is not called "
+    "equal") {
     std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 9.0),
                                      makeResult("a", Mode::kShared, 1, 8.0),
                                      makeResult("a", Mode::kMono, 1, 1.0),
@@ -248,7 +283,8 @@ TEST_CASE("the front holds what is worth its time, and a picture that holds what
 }
 
 TEST_CASE("a table that is wider than a terminal is several, each with its methods and no wider") {
-    const std::string whole = benchTable({"GPU", "", {withError(1.0, 0.5)}}), parts = benchTable({"GPU", "", {withError(1.0, 0.5)}}, 100);
+    const std::string whole = benchTable({"GPU", "", {withError(1.0, 0.5)}}),
+                      parts = benchTable({"GPU", "", {withError(1.0, 0.5)}}, 100);
     const auto wordsOf = [](const std::string& text) {
         std::istringstream stream(text);
         return std::multiset<std::string>(std::istream_iterator<std::string>(stream), {});
@@ -274,7 +310,8 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
     for (std::size_t i = 0; i < 512; ++i) { picture.values[4 * i] += i % 32 < 16 ? 0.02f : 0.005f; }
     const SeenScores seen = measureSeen(full, picture, std::array{0.5, 1.0});
     CHECK(seen.mean_square == doctest::Approx((0.5 * 0.1024 + 0.0064) / (3 * 512)).epsilon(1e-4));
-    CHECK(these(seen.psnrDb(), seen.noticed) == these(doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4), 0.5));
+    CHECK(these(seen.psnrDb(), seen.noticed) ==
+          these(doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4), 0.5));
     CHECK(measureSeen(full, full, std::array{0.5, 1.0}).noticed == 0.0);
     // The score appears in the tables and has its own panel in the plot.
     BenchResult result = withError(1.0, 0.01);
@@ -286,7 +323,9 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
     CHECK(contains(benchCsv({"GPU", "", {result}}), ",44.2597,0.5,"));
 }
 
-TEST_CASE("of the tiles that were not rendered, those count as far under a bound that are more than 2 dB under it") {
+TEST_CASE(
+    "of the tiles that were not rendered, those count as far under a bound that are more than 2 dB under "
+    "it") {
     // Three by two tiles; those on the right and at the bottom stick out, so one row of two is whole.
     const glm::uvec2 size_px(40, 24);
     const auto squareOf = [](double psnr_db) { return static_cast<float>(std::pow(10.0, -0.1 * psnr_db)); };
@@ -296,8 +335,8 @@ TEST_CASE("of the tiles that were not rendered, those count as far under a bound
         return std::pair(found.kept, found.under);
     };
     using Counts = std::pair<std::uint64_t, std::uint64_t>;
-    CHECK(these(find({0, 0, 0, 0, 0, 0}, 28.0), find({0, 0, 3, 3, 3, 3}, 29.0), find({0, 0, 0, 0, 0, 0}, 27.9)) ==
-          these(Counts(2, 1), Counts(2, 2), Counts(2, 0)));
+    CHECK(these(find({0, 0, 0, 0, 0, 0}, 28.0), find({0, 0, 3, 3, 3, 3}, 29.0),
+                find({0, 0, 0, 0, 0, 0}, 27.9)) == these(Counts(2, 1), Counts(2, 2), Counts(2, 0)));
     CHECK(find({0, 3, 0, 0, 0, 0}, 28.0) == Counts(1, 0));  // the second one is rendered
     CHECK(find({}, 28.0) == Counts(0, 0));                  // a full render
     BoundedTiles both{2, 1};

@@ -23,9 +23,13 @@ Image brightSquare(std::uint32_t left_px) {
 TEST_CASE("within 15 degrees of a lens's centre an error counts as it is, at 43 degrees for a seventh") {
     const SeenThroughLens lens(wideCameras());
     const Image full = makeGrey({1024, 1024}, 4, 0.5f);
-    const auto find = [&](const Image& left, const Image& right) { return lens.find(lens.show({left, right}), lens.show({full, full})); };
+    const auto find = [&](const Image& left, const Image& right) {
+        return lens.find(lens.show({left, right}), lens.show({full, full}));
+    };
     const auto worst = [](const VisibleErrors& errors) { return worstTiles(errors.tile_squares, 1e-9); };
-    const auto badTiles = [](const VisibleErrors& errors) { return errors.badShare() * static_cast<double>(errors.tile_squares.size()); };
+    const auto badTiles = [](const VisibleErrors& errors) {
+        return errors.badShare() * static_cast<double>(errors.tile_squares.size());
+    };
     const double whole = worst(findVisibleErrors({brightSquare(448), full}, {full, full}));
     const VisibleErrors middle = find(brightSquare(448), full), border = find(brightSquare(16), full);
     CHECK(badTiles(middle) == doctest::Approx(64.0));
@@ -40,7 +44,9 @@ TEST_CASE("within 15 degrees of a lens's centre an error counts as it is, at 43 
     Cameras aside = wideCameras();
     aside.lens_centres = {glm::dvec3(-0.93, 0.0, 1.0), glm::dvec3(-0.93, 0.0, 1.0)};
     const SeenThroughLens there(aside);
-    const auto findThere = [&](const Image& left) { return there.find(there.show({left, full}), there.show({full, full})); };
+    const auto findThere = [&](const Image& left) {
+        return there.find(there.show({left, full}), there.show({full, full}));
+    };
     CHECK(badTiles(findThere(brightSquare(16))) > 0.0);
     CHECK(worst(findThere(brightSquare(880))) < 0.1 * whole);
 }

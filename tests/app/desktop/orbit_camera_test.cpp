@@ -11,7 +11,8 @@ const glm::uvec2 kSizePx(800, 600);
 
 glm::dvec2 pixelOf(const Eye& eye, const glm::dvec3& point) {
     const glm::dvec3 p = transform(inverse(eye.world_from_camera), point);
-    return {eye.intrinsics.fx * p.x / p.z + eye.intrinsics.cx, eye.intrinsics.fy * p.y / p.z + eye.intrinsics.cy};
+    return {eye.intrinsics.fx * p.x / p.z + eye.intrinsics.cx,
+            eye.intrinsics.fy * p.y / p.z + eye.intrinsics.cy};
 }
 Eye eyeOf(const OrbitCamera& camera) { return eyesOf(camera, {}, kSizePx).front(); }
 void checkUpright(const OrbitCamera& camera) {
@@ -21,7 +22,9 @@ void checkUpright(const OrbitCamera& camera) {
     CHECK(glm::dot(down, kView.up) < 0.0);
 }
 
-TEST_CASE("what is under the pointer stays there while one orbits and nears it, and follows it where one moves; the camera stays upright") {
+TEST_CASE(
+    "what is under the pointer stays there while one orbits and nears it, and follows it where one moves; "
+    "the camera stays upright") {
     CameraMover mover;
     mover.set(OrbitCamera(kView));
     CHECK(glm::distance(mover.camera().centre(), kView.look) < 1e-9);
@@ -44,13 +47,16 @@ TEST_CASE("what is under the pointer stays there while one orbits and nears it, 
     checkUpright(mover.camera());
 }
 
-TEST_CASE("a way ends where it leads, the shorter way round; keys end it; a new centre and a whole scene come into the middle") {
+TEST_CASE(
+    "a way ends where it leads, the shorter way round; keys end it; a new centre and a whole scene come into "
+    "the middle") {
     CameraMover mover;
     OrbitCamera from(kView);
     from.turn(3.0, 0.0);
     OrbitCamera to(kView);
     to.turn(-3.0, 0.2);
-    const glm::dvec3 half = OrbitCamera::between(from, to, 0.5).pose().orientation * glm::dvec3(0.0, 0.0, 1.0);
+    const glm::dvec3 half =
+        OrbitCamera::between(from, to, 0.5).pose().orientation * glm::dvec3(0.0, 0.0, 1.0);
     CHECK(glm::dot(half, glm::normalize(kView.look - kView.eye)) < -0.8);
     mover.set(from);
     mover.glideTo(to);
@@ -67,14 +73,17 @@ TEST_CASE("a way ends where it leads, the shorter way round; keys end it; a new 
     CHECK(std::asin(2.0 / whole.distance()) == doctest::Approx(0.5));
 }
 
-TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, what is nearer is crossed; parts show each its eye") {
+TEST_CASE(
+    "what lies in the plane of the screen is at one pixel for both eyes, what is nearer is crossed; parts "
+    "show each its eye") {
     const OrbitCamera camera(kView);
     for (const double plane : {1.0, 2.0}) {
         const WindowSight sight{WindowStereo::kSideBySide, 0.05, plane, 1.0};
         const std::vector<Eye> eyes = eyesOf(camera, sight, kSizePx);
         REQUIRE(eyes.size() == 2);
-        CHECK(glm::distance(eyes[kLeft].world_from_camera.position, eyes[kRight].world_from_camera.position) ==
-              doctest::Approx(0.05 * plane * camera.distance()));
+        CHECK(
+            glm::distance(eyes[kLeft].world_from_camera.position, eyes[kRight].world_from_camera.position) ==
+            doctest::Approx(0.05 * plane * camera.distance()));
         const auto parallax = [&](double share) {
             const glm::dvec3 point = glm::mix(camera.position(), camera.centre(), share);
             return pixelOf(eyes[kRight], point).x - pixelOf(eyes[kLeft], point).x;
@@ -85,13 +94,19 @@ TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, w
         const glm::dvec2 place(123.0, 456.0);
         CHECK(glm::distance(pixelOf(eyes[kRight], pointAt(eyes[kRight], place, 2.0)), place) < 1e-9);
     }
-    const auto eyeAt = [](WindowStereo stereo, const glm::dvec2& place) { return partAt(partsOf(stereo, {100, 60}), place)->eye; };
-    CHECK(these(eyeAt(WindowStereo::kSideBySide, {20, 30}), eyeAt(WindowStereo::kSideBySide, {70, 30})) == these(kLeft, kRight));
-    CHECK(these(eyeAt(WindowStereo::kCrossEyed, {20, 30}), eyeAt(WindowStereo::kTopBottom, {20, 40})) == these(kRight, kRight));
+    const auto eyeAt = [](WindowStereo stereo, const glm::dvec2& place) {
+        return partAt(partsOf(stereo, {100, 60}), place)->eye;
+    };
+    CHECK(these(eyeAt(WindowStereo::kSideBySide, {20, 30}), eyeAt(WindowStereo::kSideBySide, {70, 30})) ==
+          these(kLeft, kRight));
+    CHECK(these(eyeAt(WindowStereo::kCrossEyed, {20, 30}), eyeAt(WindowStereo::kTopBottom, {20, 40})) ==
+          these(kRight, kRight));
     CHECK_FALSE(partAt(partsOf(WindowStereo::kMono, {100, 60}), {100, 30}).has_value());
 }
 
-TEST_CASE("pictures in motion have fewer pixels where the device is slow, and do not change their size for a little") {
+TEST_CASE(
+    "pictures in motion have fewer pixels where the device is slow, and do not change their size for a "
+    "little") {
     MotionScale slow, fast;
     for (int i = 0; i < 50; ++i) {
         slow.measure(slow.scale(), 100.0 * slow.scale() * slow.scale());
@@ -99,7 +114,9 @@ TEST_CASE("pictures in motion have fewer pixels where the device is slow, and do
     }
     CHECK(fast.scale() == 1.0);
     CHECK(slow.scale() == doctest::Approx(0.5));
-    for (int i = 0; i < 50; ++i) { slow.measure(slow.scale(), (i % 2 == 0 ? 140.0 : 80.0) * slow.scale() * slow.scale()); }
+    for (int i = 0; i < 50; ++i) {
+        slow.measure(slow.scale(), (i % 2 == 0 ? 140.0 : 80.0) * slow.scale() * slow.scale());
+    }
     CHECK(slow.scale() == doctest::Approx(0.5));
 }
 

@@ -29,12 +29,16 @@ void checkRefused(const std::string& line, ExitCode code, const std::string& par
 std::string describe(const Options& options) {
     std::string text;
     const auto addRows = [&](const RunOptions& run) {
-        for (const OptionRow<RunOptions>& row : runRows()) { text += fmt::format("{} {}\n", row.text.key, textOf(row.field.value(run))); }
+        for (const OptionRow<RunOptions>& row : runRows()) {
+            text += fmt::format("{} {}\n", row.text.key, textOf(row.field.value(run)));
+        }
         text += fmt::format("most-splats {}\n", run.load.most_splats);
     };
     const auto add = [&](const auto& command) {
         using Command = std::remove_cvref_t<decltype(command)>;
-        if constexpr (std::is_same_v<Command, ViewOptions>) { text += fmt::format("scene {}\nbrowse {}\n", command.scene, command.browse); }
+        if constexpr (std::is_same_v<Command, ViewOptions>) {
+            text += fmt::format("scene {}\nbrowse {}\n", command.scene, command.browse);
+        }
         if constexpr (requires { command.run; }) {
             addRows(command.run);
         } else if constexpr (requires { command.load; }) {
@@ -73,14 +77,19 @@ TEST_CASE("a number beyond its range, and a word that is none of a few, are refu
     const auto checkRows = [](const std::string& command, const auto& rows) {
         for (const auto& row : rows) {
             const bool needs_cameras = std::string_view(row.text.key) == "view";
-            const std::string option = fmt::format("{}{} --{}=", command, needs_cameras ? " --cameras c" : "", row.text.key);
+            const std::string option =
+                fmt::format("{}{} --{}=", command, needs_cameras ? " --cameras c" : "", row.text.key);
             const auto refuse = [&](const std::string& value, const std::string& expected) {
-                checkRefused(option + value, ExitCode::kBadInput, fmt::format("--{} is {}, must be {}", row.text.key, value, expected));
+                checkRefused(option + value, ExitCode::kBadInput,
+                             fmt::format("--{} is {}, must be {}", row.text.key, value, expected));
             };
             if (row.field.least) {
                 const double least = *row.field.least, most = *row.field.most;
-                for (const double value : {least - 1.0, most + 1.0, std::nan(""), HUGE_VAL}) { refuse(fmt::format("{}", value), "a "); }
-                CHECK_THROWS_WITH_AS(parseLine(option + "1x"), doctest::Contains(fmt::format("number from {}", least).c_str()), Error);
+                for (const double value : {least - 1.0, most + 1.0, std::nan(""), HUGE_VAL}) {
+                    refuse(fmt::format("{}", value), "a ");
+                }
+                CHECK_THROWS_WITH_AS(parseLine(option + "1x"),
+                                     doctest::Contains(fmt::format("number from {}", least).c_str()), Error);
             }
             if (!row.field.choices.empty()) { refuse("nonsense", std::string(row.field.choices.front())); }
         }
@@ -93,21 +102,28 @@ TEST_CASE("a number beyond its range, and a word that is none of a few, are refu
     checkRows("compare a b", compareRows());
     for (const OptionRow<RunOptions>& row : runRows()) {
         for (const std::string_view choice : row.field.choices) {
-            CHECK(textOf(row.field.value(renderOptions(fmt::format("--{} {}", row.text.key, choice)))) == choice);
+            CHECK(textOf(row.field.value(renderOptions(fmt::format("--{} {}", row.text.key, choice)))) ==
+                  choice);
         }
     }
 }
 
 TEST_CASE("a text that is empty, a camera that spans no view and a headset that is nobody's are refused") {
-    CHECK_THROWS_WITH_AS(parseWords({"compare", "a", "b", "--lpips", ""}), "--lpips is empty, must be one text that is not empty", Error);
+    CHECK_THROWS_WITH_AS(parseWords({"compare", "a", "b", "--lpips", ""}),
+                         "--lpips is empty, must be one text that is not empty", Error);
     for (const char* options : {"--eye 0,0,0 --look 0,0,0", "--up 0,0,1 --eye 0,0,0 --look 0,0,1"}) {
-        CHECK_THROWS_WITH_AS(makeCameras(renderOptions(options), {}, makeBox("box.ply")), doctest::Contains("span a view"), Error);
+        CHECK_THROWS_WITH_AS(makeCameras(renderOptions(options), {}, makeBox("box.ply")),
+                             doctest::Contains("span a view"), Error);
     }
-    CHECK_THROWS_WITH_AS(readCameraFiles(renderOptions("--headset nobody").camera), doctest::Contains("nobody.toml: not found"), Error);
+    CHECK_THROWS_WITH_AS(readCameraFiles(renderOptions("--headset nobody").camera),
+                         doctest::Contains("nobody.toml: not found"), Error);
 }
 
-TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the program makes, and every key of the default config is taken") {
-    CHECK_MESSAGE(textIn(kSource / "docs/options.md") == documentOf("markdown"), "run `binosplat document markdown > docs/options.md`");
+TEST_CASE_FIXTURE(AtWork,
+                  "the documents of the options are those that the program makes, and every key of the "
+                  "default config is taken") {
+    CHECK_MESSAGE(textIn(kSource / "docs/options.md") == documentOf("markdown"),
+                  "run `binosplat document markdown > docs/options.md`");
     const std::string text = textIn(kSource / "configs/default.toml");
     CHECK_MESSAGE(text == documentOf("config"), "run `binosplat document config > configs/default.toml`");
     // The file has every key of a config, as a comment if the key has no default; uncommented, each key is
@@ -131,35 +147,48 @@ TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the progr
         const auto options = parse<ViewOptions>("view a --config " + one);
         CHECK_NOTHROW(readViewSettings(options.tables, {}));
         CHECK(options.tables.empty() == (table != "[view]"));
-        if (line.starts_with("mode ") || !options.tables.empty()) { CHECK(is_comment == line.starts_with("mode ")); }
+        if (line.starts_with("mode ") || !options.tables.empty()) {
+            CHECK(is_comment == line.starts_with("mode "));
+        }
     }
     CHECK(keys == runRows().size() + viewSettingsRows().size() + 3);
     writeText(one, "[view]\n" + placement);
-    CHECK(readViewSettings(parse<ViewOptions>("view a --config " + one).tables, {}).scene_from_room.has_value());
+    CHECK(readViewSettings(parse<ViewOptions>("view a --config " + one).tables, {})
+              .scene_from_room.has_value());
     CHECK(text.find("\n# mode = \"predicted\"") != std::string::npos);
     // The values in the file are the defaults.
-    const RunOptions none = renderOptions(""), file = renderOptions("--config " + (kSource / "configs/default.toml").string());
+    const RunOptions none = renderOptions(""),
+                     file = renderOptions("--config " + (kSource / "configs/default.toml").string());
     CHECK(these(file.camera.near, file.camera.background, file.stereo, file.metres_per_unit) ==
           these(none.camera.near, none.camera.background, none.stereo, none.metres_per_unit));
     CHECK_FALSE(none.camera.near);  // depends on the size of the scene
     CHECK(none.stereo.mode == Mode::kPredicted);
 }
 
-TEST_CASE("bash is told of files for the options that take one, of names for those that are one of a few, and of nothing for others") {
+TEST_CASE(
+    "bash is told of files for the options that take one, of names for those that are one of a few, and of "
+    "nothing for others") {
     const std::string bash = documentOf("bash"), files = "COMPREPLY=($(compgen -f -- \"$word\"));";
-    const auto names = [](const char* choices) { return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\"));", choices); };
-    std::map<std::string, std::string> expected{{"render:--path-axes", names("openxr unity")}, {"view:--dominant", names("left right")}};
-    for (const std::string& option : wordsIn("render:--path render:--out render:--cameras bench:--motion bench:--photos compare:--lpips "
-                                             "scene:--out view:--config view:--shaders view:--simulate")) {
+    const auto names = [](const char* choices) {
+        return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\"));", choices);
+    };
+    std::map<std::string, std::string> expected{{"render:--path-axes", names("openxr unity")},
+                                                {"view:--dominant", names("left right")}};
+    for (const std::string& option :
+         wordsIn("render:--path render:--out render:--cameras bench:--motion bench:--photos compare:--lpips "
+                 "scene:--out view:--config view:--shaders view:--simulate")) {
         expected[option] = files;
     }
     for (const char* option : {"render:--rate", "render:--headset"}) { expected[option] = ""; }
     for (const auto& [option, completed] : expected) {
-        CHECK_MESSAGE(bash.find(fmt::format("        {}) {} return ;;\n", option, completed)) != std::string::npos, option);
+        CHECK_MESSAGE(
+            bash.find(fmt::format("        {}) {} return ;;\n", option, completed)) != std::string::npos,
+            option);
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "splats go by depth or by distance: as the command line says, the config, or else the scene") {
+TEST_CASE_FIXTURE(
+    AtWork, "splats go by depth or by distance: as the command line says, the config, or else the scene") {
     writeText(work.path / "a.toml", "[stereo]\norder = \"distance\"\n");
     const std::string file = "--config " + (work.path / "a.toml").string();
     const auto orderOf = [](const std::string& options, Order usual) {
@@ -170,7 +199,8 @@ TEST_CASE_FIXTURE(AtWork, "splats go by depth or by distance: as the command lin
     StereoOptions stays;
     stays.axes = Axes::kStay;
     CHECK(frameSettings({}, stays, Order::kDepth).order == Order::kDistance);
-    CHECK(these(orderOf("", Order::kDistance), orderOf(file, Order::kDepth), orderOf("--order depth", Order::kDistance)) ==
+    CHECK(these(orderOf("", Order::kDistance), orderOf(file, Order::kDepth),
+                orderOf("--order depth", Order::kDistance)) ==
           these(Order::kDistance, Order::kDistance, Order::kDepth));
     CHECK(orderOf(file + " --order depth", Order::kDistance) == Order::kDepth);
     CHECK(view("--order distance").stereo.order == Order::kDistance);
@@ -189,7 +219,8 @@ TEST_CASE("half the resolution goes with foveation, and the headset has it unles
     for (const std::string_view mode : kModeNames) {
         const std::string half = fmt::format("--mode {} --periphery half", mode);
         CHECK(refusal(half + " --foveation 20") == "");
-        CHECK(refusal(half) == "--periphery is half, but --foveation is 0, must be the angle within which resolution is full");
+        CHECK(refusal(half) ==
+              "--periphery is half, but --foveation is 0, must be the angle within which resolution is full");
     }
     CHECK(view("").stereo.half_periphery);
     CHECK(view("").stereo.axes == Axes::kStay);

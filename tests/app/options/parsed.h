@@ -28,7 +28,9 @@ Chosen parse(const std::string& line) {
 
 inline const std::string kRenderOne = "render builtin:one-splat --out out ";
 
-inline RunOptions renderOptions(const std::string& options) { return parse<RenderOptions>(kRenderOne + options).run; }
+inline RunOptions renderOptions(const std::string& options) {
+    return parse<RenderOptions>(kRenderOne + options).run;
+}
 
 // A scene that fills the box from (-1, -2, -3) to (1, 2, 3).
 inline Scene makeBox(const std::string& name) {

@@ -29,7 +29,8 @@ TEST_CASE("eyes look at their lenses or where they are said to") {
     const auto at_lenses = gazes("--foveation 15");
     REQUIRE(at_lenses[kLeft]);
     CHECK(these(at_lenses[kLeft]->clear_rad, at_lenses[kLeft]->direction, at_lenses[kRight]->direction) ==
-          these(doctest::Approx(glm::radians(15.0)), headset.lens_centres[kLeft], headset.lens_centres[kRight]));
+          these(doctest::Approx(glm::radians(15.0)), headset.lens_centres[kLeft],
+                headset.lens_centres[kRight]));
     // For eyes that are turned outwards, the direction ahead of the head points inwards.
     const auto ahead = gazes("--foveation 15 --gaze 0,0,1");
     CHECK(ahead[kLeft]->direction.x == doctest::Approx(std::sin(0.1)));
@@ -41,7 +42,8 @@ TEST_CASE("eyes look at their lenses or where they are said to") {
     CHECK(std::abs(of_one[0]->direction.x) < 1e-12);
     CHECK(of_one[0]->direction.z > 1.0);
     CHECK(gazes("--mode mono --foveation 15 --gaze 1,0,2")[0]->direction == glm::dvec3(1, 0, 2));
-    CHECK(parse<BenchOptions>("bench a --out b --foveation 1 --gaze 1,0,1").run.stereo.gaze == glm::dvec3(1, 0, 1));
+    CHECK(parse<BenchOptions>("bench a --out b --foveation 1 --gaze 1,0,1").run.stereo.gaze ==
+          glm::dvec3(1, 0, 1));
 }
 
 TEST_CASE("eyes stand half their distance from the middle") {
@@ -52,11 +54,14 @@ TEST_CASE("eyes stand half their distance from the middle") {
     // Up is -y by default, so the camera's x is the world's x here.
     CHECK(glm::length(cameras.eyes[kLeft].world_from_camera.position - glm::dvec3(0.98, 2.0, 3.0)) < 1e-12);
     CHECK(glm::length(cameras.eyes[kRight].world_from_camera.position - glm::dvec3(1.02, 2.0, 3.0)) < 1e-12);
-    CHECK(these(cameras.middle.intrinsics.fx, cameras.middle.intrinsics.fy, cameras.middle.intrinsics.cx, cameras.middle.intrinsics.cy) ==
+    CHECK(these(cameras.middle.intrinsics.fx, cameras.middle.intrinsics.fy, cameras.middle.intrinsics.cx,
+                cameras.middle.intrinsics.cy) ==
           these(doctest::Approx(100.0), doctest::Approx(100.0), 100.0, 50.0));
 }
 
-TEST_CASE("a file is framed whole: upright and from its front where its y is up, and from afar where it is one wide splat") {
+TEST_CASE(
+    "a file is framed whole: upright and from its front where its y is up, and from afar where it is one "
+    "wide splat") {
     Scene scene = makeBox("box.ply");
     const Cameras cameras = makeCameras(renderOptions(""), {}, scene);
     const Intrinsics& k = cameras.middle.intrinsics;
@@ -88,18 +93,26 @@ TEST_CASE("a file is framed whole: upright and from its front where its y is up,
     CHECK(startView(one, {60.0}).view.eye.z == doctest::Approx(3.0 - 24.0));
 }
 
-TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or where training leaves them, and --view takes those") {
-    const fs::path garden = work.path / "garden", iteration = garden / "point_cloud/iteration_7000", sog = work.path / "sog";
-    const fs::path scene = work.path / "a.ply", beside = work.path / "cameras.json", trained = garden / "cameras.json";
+TEST_CASE_FIXTURE(AtWork,
+                  "cameras lie with a scene in its folder, beside it, or where training leaves them, and "
+                  "--view takes those") {
+    const fs::path garden = work.path / "garden", iteration = garden / "point_cloud/iteration_7000",
+                   sog = work.path / "sog";
+    const fs::path scene = work.path / "a.ply", beside = work.path / "cameras.json",
+                   trained = garden / "cameras.json";
     fs::create_directories(iteration);
     fs::create_directories(sog);
-    for (const fs::path& file : {iteration / "point_cloud.ply", scene, sog / "meta.json"}) { writeText(file, "x"); }
+    for (const fs::path& file : {iteration / "point_cloud.ply", scene, sog / "meta.json"}) {
+        writeText(file, "x");
+    }
     const auto with = [&](const std::string& options) {
-        return parse<RenderOptions>(fmt::format("render {} --out out {}", garden.string(), options)).run.camera;
+        return parse<RenderOptions>(fmt::format("render {} --out out {}", garden.string(), options))
+            .run.camera;
     };
     CHECK(findCameraFile(scene).empty());
     writeText(beside, "[]");
-    CHECK(these(findCameraFile(scene), findCameraFile(sog), findCameraFile(work.path / "sog/")) == these(beside, beside, beside));
+    CHECK(these(findCameraFile(scene), findCameraFile(sog), findCameraFile(work.path / "sog/")) ==
+          these(beside, beside, beside));
     CHECK(findCameraFile(garden).empty());  // these cameras belong to another scene
     CHECK(errorOf([&] { with("--view 1"); }).starts_with("--view is given without --cameras"));
     writeText(trained, "[]");
@@ -110,31 +123,41 @@ TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or
     const auto viewed = parse<ViewOptions>("view " + scene.string() + " --view 3").run.camera;
     CHECK(these(viewed.cameras_file, viewed.view) == these(beside.string(), 3));
     CHECK(parse<ViewOptions>("view a --cameras c.json").run.camera.cameras_file == "c.json");
-    CHECK(these(with("--view 1").cameras_file, with("--view 1").view, with("").cameras_file.empty()) == these(trained.string(), 1, true));
+    CHECK(these(with("--view 1").cameras_file, with("--view 1").view, with("").cameras_file.empty()) ==
+          these(trained.string(), 1, true));
     CHECK(with("--view 1 --cameras other.json").cameras_file == "other.json");
-    CHECK(errorOf([&] { with("--view 1 --eye 0,0,0"); }) == "--view and --eye contradict each other, must be one of them");
+    CHECK(errorOf([&] { with("--view 1 --eye 0,0,0"); }) ==
+          "--view and --eye contradict each other, must be one of them");
     writeText(work.path / "a.toml", "headset = \"quest2\"\n");
     CHECK(with("--view 1 --config " + (work.path / "a.toml").string()).headset.empty());
     writeText(work.path / "b.toml", "cameras = \"b.json\"\n");
-    CHECK(with("--view 1 --config " + (work.path / "b.toml").string()).cameras_file == (work.path / "b.json").string());
+    CHECK(with("--view 1 --config " + (work.path / "b.toml").string()).cameras_file ==
+          (work.path / "b.json").string());
     const auto bench = parse<BenchOptions>("bench " + garden.string() + " --out out --view 1");
-    CHECK(these(bench.run.camera.cameras_file, bench.asked.cameras_file) == these(trained.string(), trained.string()));
-    CHECK(errorOf([&] { parseLine("bench " + garden.string() + " builtin:fence --out out --view 1"); }) != "");
+    CHECK(these(bench.run.camera.cameras_file, bench.asked.cameras_file) ==
+          these(trained.string(), trained.string()));
+    CHECK(errorOf([&] { parseLine("bench " + garden.string() + " builtin:fence --out out --view 1"); }) !=
+          "");
     writeText(garden / "meta.json", "{}");  // a SOG scene is not the output of a training
     CHECK(with("--view 1").cameras_file == trained.string());
 }
 
-TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, upright along the mean up of all") {
+TEST_CASE_FIXTURE(AtWork,
+                  "one stands at the first camera that sees the scene, upright along the mean up of all") {
     const Scene scene = makeBox((work.path / "box.ply").string());
     const auto camera = [](const char* name, const char* position, const char* rotation) {
-        return fmt::format(R"({{"img_name": "{}", "position": {}, "rotation": {}, "width": 100, "height": 80, "fx": 80, "fy": 80}})", name,
-                           position, rotation);
+        return fmt::format(
+            R"({{"img_name": "{}", "position": {}, "rotation": {}, "width": 100, "height": 80, "fx": 80,)"
+            R"( "fy": 80}})",
+            name, position, rotation);
     };
     // The first looks away from the scene. The second looks along z, tilted by 0.2 to one side, and the third
     // by as much to the other.
     const std::string away = camera("away", "[0, 0, -9]", "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]"),
-                      right = camera("right", "[0, 0, -9]", "[[0.98, -0.198997487, 0], [0.198997487, 0.98, 0], [0, 0, 1]]"),
-                      left = camera("left", "[1, 0, -9]", "[[0.98, 0.198997487, 0], [-0.198997487, 0.98, 0], [0, 0, 1]]");
+                      right = camera("right", "[0, 0, -9]",
+                                     "[[0.98, -0.198997487, 0], [0.198997487, 0.98, 0], [0, 0, 1]]"),
+                      left = camera("left", "[1, 0, -9]",
+                                    "[[0.98, 0.198997487, 0], [-0.198997487, 0.98, 0], [0, 0, 1]]");
     const fs::path file = work.path / "cameras.json";
     writeText(file, "[" + away + "," + right + "," + left + "]");
     const StartView start = startView(scene);
@@ -148,7 +171,8 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, u
     const RunOptions placed = renderOptions("--eye 0,0,5");
     CHECK(startView(scene, placed.camera, 1.0).eye == glm::dvec3(0, 0, 5));
     CHECK(makeCameras(placed, {}, scene).view->up == start.view.up);
-    CHECK(startView(scene, renderOptions("--view 2 --cameras " + file.string()).camera, 1.0).eye == glm::dvec3(1, 0, -9));
+    CHECK(startView(scene, renderOptions("--view 2 --cameras " + file.string()).camera, 1.0).eye ==
+          glm::dvec3(1, 0, -9));
     // Cameras of another scene and broken ones are reported and ignored.
     writeText(file, "[" + away + "]");
     CHECK(startView(scene).why.ends_with("cameras.json sees the scene"));
@@ -170,15 +194,21 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, u
     CHECK(above.view.eye == glm::dvec3(0, 2, 8));
 }
 
-TEST_CASE("the up of cameras that all look straight down on one course is the ground's, and of those that look at a wall it is theirs") {
+TEST_CASE(
+    "the up of cameras that all look straight down on one course is the ground's, and of those that look at "
+    "a wall it is theirs") {
     // A field of 40 by 40 with boxes on it, whose up is `up`.
     const auto field = [](const glm::dvec3& up, const glm::dvec3& u) {
         Scene scene;
         const glm::dvec3 v = glm::cross(up, u);
-        const auto add = [&](double x, double y, double h) { scene.positions.emplace_back(x * u + y * v + h * up); };
+        const auto add = [&](double x, double y, double h) {
+            scene.positions.emplace_back(x * u + y * v + h * up);
+        };
         for (int x = -20; x < 20; ++x) {
             for (int y = -20; y < 20; ++y) {
-                for (const double part : {0.1, 0.4, 0.7}) { add(x + part, y + part, 0.02 * ((x * 7 + y * 5) % 5)); }
+                for (const double part : {0.1, 0.4, 0.7}) {
+                    add(x + part, y + part, 0.02 * ((x * 7 + y * 5) % 5));
+                }
                 if (x % 8 != 0 || y % 8 != 0) { continue; }
                 for (int i = 0; i < 48; ++i) { add(x + 0.2 * (i % 4), y + 0.2 * (i / 4 % 4), i / 16); }
             }
@@ -235,7 +265,8 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
             CHECK(glm::dot(found->up, x) > 0.98);
             CHECK(found->why == "the mean of all cameras'");
         }
-        for (const auto& found : {shaken(0.5, 2.0, 0.5), shaken(2.0, 3.0, 2.0), shaken(0.2, 0.0, 0.2), shaken(3.0, 3.0, 1.0)}) {
+        for (const auto& found :
+             {shaken(0.5, 2.0, 0.5), shaken(2.0, 3.0, 2.0), shaken(0.2, 0.0, 0.2), shaken(3.0, 3.0, 1.0)}) {
             REQUIRE(found);
             CHECK(glm::dot(found->up, -z_up) > 0.999);
         }
@@ -256,7 +287,9 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
     CHECK_FALSE(upOfCameras({}, wall));
 }
 
-TEST_CASE("a scene in the coordinates of a country is seen as the same one at 0: from its own cameras, from given ones and from --eye") {
+TEST_CASE(
+    "a scene in the coordinates of a country is seen as the same one at 0: from its own cameras, from given "
+    "ones and from --eye") {
     const Workplace work;
     // The splats and a camera, moved by this much, in a folder of their own.
     const auto place = [&](const std::string& name, const glm::dvec3& moved) {
@@ -265,10 +298,13 @@ TEST_CASE("a scene in the coordinates of a country is seen as the same one at 0:
         scene.origin = moved;
         writePly(scene, (work.path / name / "scene.ply").string());
         const glm::dvec3 at = moved + glm::dvec3(0.25, -0.5, -1.0);
-        writeText(work.path / name / "cameras.json",
-                  fmt::format(R"([{{"img_name": "a", "position": [{:.3f}, {:.3f}, {:.3f}], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],)"
-                              R"("width": 100, "height": 80, "fx": 80, "fy": 80}}])",
-                              at.x, at.y, at.z));
+        writeText(
+            work.path / name / "cameras.json",
+            fmt::format(
+                R"([{{"img_name": "a", "position": [{:.3f}, {:.3f}, {:.3f}], "rotation": [[1, 0, 0], [0,)"
+                R"( 1, 0], [0, 0, 1]],)"
+                R"("width": 100, "height": 80, "fx": 80, "fy": 80}}])",
+                at.x, at.y, at.z));
         return loadScene((work.path / name / "scene.ply").string());
     };
     const glm::dvec3 away(500'000.0, -4'200'000.0, 0.0);
@@ -282,14 +318,18 @@ TEST_CASE("a scene in the coordinates of a country is seen as the same one at 0:
     const auto fromSplat = [](const Scene& scene, const Cameras& cameras) {
         return cameras.middle.world_from_camera.position - glm::dvec3(scene.positions.front());
     };
-    const auto given = [&](const std::string& name) { return "--view 0 --cameras " + (work.path / name / "cameras.json").string(); };
-    for (const auto& [at_home, there] : {std::pair(std::string(), std::string()),
-                                         {given("home"), given("far")},
-                                         {std::string("--eye 1,2,-3 --look 0,0,1"), "--eye 500001,-4199998,-3 --look 500000,-4200000,1"}}) {
+    const auto given = [&](const std::string& name) {
+        return "--view 0 --cameras " + (work.path / name / "cameras.json").string();
+    };
+    for (const auto& [at_home, there] :
+         {std::pair(std::string(), std::string()),
+          {given("home"), given("far")},
+          {std::string("--eye 1,2,-3 --look 0,0,1"), "--eye 500001,-4199998,-3 --look 500000,-4200000,1"}}) {
         CAPTURE(there);
         const Cameras usual = camerasOf(home, at_home), moved = camerasOf(far, there);
         CHECK(glm::distance(fromSplat(far, moved), fromSplat(home, usual)) < 1e-5);
-        const glm::dquat turn = glm::conjugate(usual.middle.world_from_camera.orientation) * moved.middle.world_from_camera.orientation;
+        const glm::dquat turn = glm::conjugate(usual.middle.world_from_camera.orientation) *
+                                moved.middle.world_from_camera.orientation;
         CHECK(std::abs(turn.w) > 1.0 - 1e-9);
         CHECK(moved.origin == far.origin);
         REQUIRE(moved.view.has_value() == usual.view.has_value());

@@ -21,7 +21,9 @@ TEST_CASE("any range has three to ten ticks, in order, within an axis that holds
                 const PlotAxis axis = axisOver(scale, low, low * ratio);
                 INFO("low ", low, ", ratio ", ratio);
                 CHECK(axis.ticks().size() == within(3, 10));
-                for (std::size_t i = 1; i < axis.ticks().size(); ++i) { CHECK(axis.ticks()[i] > axis.ticks()[i - 1]); }
+                for (std::size_t i = 1; i < axis.ticks().size(); ++i) {
+                    CHECK(axis.ticks()[i] > axis.ticks()[i - 1]);
+                }
                 CHECK(axis.share(low) > -1e-9);
                 CHECK(axis.share(low * ratio) < 1.0 + 1e-9);
                 CHECK(axis.share(axis.ticks().front()) > -1e-9);
@@ -36,16 +38,22 @@ TEST_CASE("what has no place, and short numbers") {
     CHECK_FALSE(PlotAxis(Scale::kLog).shows(std::nan("")));
     CHECK(PlotAxis(Scale::kLinear).shows(-1.0));
     CHECK_FALSE(PlotAxis(Scale::kLinear).shows(INFINITY));
-    CHECK(these(shortNumber(1500.0), shortNumber(3e6), shortNumber(2e9), shortNumber(1e15), shortNumber(0.001)) ==
-          these("1.5k", "3M", "2G", "1e+15", "0.001"));
+    CHECK(these(shortNumber(1500.0), shortNumber(3e6), shortNumber(2e9), shortNumber(1e15),
+                shortNumber(0.001)) == these("1.5k", "3M", "2G", "1e+15", "0.001"));
 }
 
 TEST_CASE("names stand beside their points where there is room, and never on each other") {
     const auto namesOf = [](const std::vector<std::pair<double, double>>& points, double right) {
-        PlotPanel panel{.title = "panel", .x_label = "x", .y_label = "y", .x_scale = Scale::kLinear, .y_scale = Scale::kLinear};
+        PlotPanel panel{.title = "panel",
+                        .x_label = "x",
+                        .y_label = "y",
+                        .x_scale = Scale::kLinear,
+                        .y_scale = Scale::kLinear};
         panel.lines.push_back({.label = "all", .points = {{0.0, 0.0}, {right, 10.0}}});
-        panel.lines.push_back(
-            {.label = "named", .points = points, .names = std::vector<std::string>(points.size(), "a name"), .joined = false});
+        panel.lines.push_back({.label = "named",
+                               .points = points,
+                               .names = std::vector<std::string>(points.size(), "a name"),
+                               .joined = false});
         std::vector<std::string> places;
         const std::string svg = drawPlot("plot", {panel});
         for (std::size_t at = 0; (at = svg.find("class='name'", at)) != std::string::npos; ++at) {

@@ -13,9 +13,10 @@ std::array<Eye, 2> wideEyes(double canting_rad = 0.0) {
     std::array<Eye, 2> eyes;
     for (const int side : {kLeft, kRight}) {
         const double turn = side == kLeft ? -canting_rad : canting_rad;
-        eyes[static_cast<std::size_t>(side)] = {{glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0)), {side == kLeft ? -0.03 : 0.03, 0.0, 0.0}},
-                                                intrinsicsFromFovX(glm::radians(96.0), size_px),
-                                                size_px};
+        eyes[static_cast<std::size_t>(side)] = {
+            {glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0)), {side == kLeft ? -0.03 : 0.03, 0.0, 0.0}},
+            intrinsicsFromFovX(glm::radians(96.0), size_px),
+            size_px};
     }
     return eyes;
 }
@@ -28,7 +29,8 @@ struct Lens {
             sight.rendered_tiles = view.tilesOf(side);
             // Everything within 20 degrees is seen fully, the rest by a hundredth.
             for (unsigned tile = 0; tile < tiles.x * tiles.y; ++tile) {
-                const glm::dvec3 direction = view.directionAt(16.0 * (glm::dvec2(tile % tiles.x, tile / tiles.x) + 0.5), side);
+                const glm::dvec3 direction =
+                    view.directionAt(16.0 * (glm::dvec2(tile % tiles.x, tile / tiles.x) + 0.5), side);
                 sight.shares.push_back(direction.z > std::cos(glm::radians(20.0)) ? 1.0 : 0.01);
             }
         }
@@ -46,20 +48,24 @@ struct Lens {
 
 // Stripes with strong edges and a fine pattern on them.
 float stripesAt(std::uint32_t x, std::uint32_t y) {
-    return (x / 12 % 2 == 0 ? 0.35f : 0.6f) + 0.05f * std::sin(1.1f * static_cast<float>(x) + 0.9f * static_cast<float>(y));
+    return (x / 12 % 2 == 0 ? 0.35f : 0.6f) +
+           0.05f * std::sin(1.1f * static_cast<float>(x) + 0.9f * static_cast<float>(y));
 }
 
 // The stripes, changed where `isThere`.
 template <typename Place, typename Change>
 Image draw(Place&& isThere, Change&& change) {
-    return makePicture({512, 512},
-                       [&](std::uint32_t x, std::uint32_t y) { return glm::vec3(isThere(x, y) ? change(x, y) : stripesAt(x, y)); });
+    return makePicture({512, 512}, [&](std::uint32_t x, std::uint32_t y) {
+        return glm::vec3(isThere(x, y) ? change(x, y) : stripesAt(x, y));
+    });
 }
 bool nowhere(std::uint32_t, std::uint32_t) { return false; }
 bool inTheMiddle(std::uint32_t x, std::uint32_t y) { return x >= 224 && x < 288 && y >= 224 && y < 288; }
 bool atTheBorder(std::uint32_t x, std::uint32_t y) { return x >= 16 && x < 80 && y >= 224 && y < 288; }
 float shifted(std::uint32_t x, std::uint32_t y) { return stripesAt(x + 6, y); }
-float brighter(std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + (x / 16 % 2 == 0 ? 0.02f : 0.0f); }
+float brighter(std::uint32_t x, std::uint32_t y) {
+    return stripesAt(x, y) + (x / 16 % 2 == 0 ? 0.02f : 0.0f);
+}
 
 TEST_CASE("every pixel of the lens's picture is as wide in angle as one in the middle of the flat picture") {
     const Lens lens;
@@ -70,17 +76,20 @@ TEST_CASE("every pixel of the lens's picture is as wide in angle as one in the m
     CHECK(lens.view.sizePx() == glm::uvec2(32 * static_cast<unsigned>(std::ceil(half_px / 16.0))));
     const glm::dvec2 middle_px = glm::dvec2(lens.view.sizePx()) / 2.0;
     for (const double angle_deg : {0.0, 10.0, 30.0, 47.0}) {
-        const glm::dvec3 there = lens.view.directionAt(middle_px + glm::dvec2(glm::radians(angle_deg) * focal_px, 0.0), kLeft);
+        const glm::dvec3 there =
+            lens.view.directionAt(middle_px + glm::dvec2(glm::radians(angle_deg) * focal_px, 0.0), kLeft);
         CHECK(glm::degrees(std::atan2(there.x, there.z)) == doctest::Approx(angle_deg));
         CHECK(std::abs(there.y) < 1e-12);
         // The solid angle, from the directions of neighbouring pixels in radians.
-        const double across = angle_deg > 0.0 ? std::sin(glm::radians(angle_deg)) / glm::radians(angle_deg) : 1.0;
+        const double across =
+            angle_deg > 0.0 ? std::sin(glm::radians(angle_deg)) / glm::radians(angle_deg) : 1.0;
         CHECK(lens.view.solidAngleAt(middle_px + glm::dvec2(0.0, glm::radians(angle_deg) * focal_px)) ==
               doctest::Approx(across / (focal_px * focal_px)));
     }
     // The corners of flat pictures lie beyond the lens's view; the grid's corners show nothing.
     CHECK(lens.view.tilesOf(kLeft).front() == LensView::kNowhere);
-    const std::size_t middle = static_cast<std::size_t>(middle_px.y) * lens.view.sizePx().x + static_cast<std::size_t>(middle_px.x);
+    const std::size_t middle =
+        static_cast<std::size_t>(middle_px.y) * lens.view.sizePx().x + static_cast<std::size_t>(middle_px.x);
     CHECK(lens.view.tilesOf(kLeft).at(middle) == 16 * 32 + 16);
 }
 
@@ -94,17 +103,22 @@ TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of 
     CHECK(colourOf(flat, 0, 0) == glm::vec3(0.0f));
     // At 45 degrees, 256 * tan(45) / tan(48) = 230 pixels of the flat picture from its middle.
     const Image ramp = lens.view.show(
-        makePicture({512, 512}, [](std::uint32_t x, std::uint32_t) { return glm::vec3(static_cast<float>(x) / 512.0f); }), kLeft);
+        makePicture({512, 512},
+                    [](std::uint32_t x, std::uint32_t) { return glm::vec3(static_cast<float>(x) / 512.0f); }),
+        kLeft);
     const double focal_px = wideEyes()[0].intrinsics.fx;
     for (const double angle_deg : {-45.0, -20.0, 20.0, 45.0}) {
         const auto at = static_cast<std::uint32_t>(middle.x + focal_px * glm::radians(angle_deg));
         const double place_px = focal_px * std::tan((at + 0.5 - middle.x) / focal_px);
-        CHECK(colourOf(ramp, at, middle.y).x == doctest::Approx(0.5 + (place_px - 0.5) / 512.0).epsilon(0.001));
+        CHECK(colourOf(ramp, at, middle.y).x ==
+              doctest::Approx(0.5 + (place_px - 0.5) / 512.0).epsilon(0.001));
     }
     // Stripes one pixel wide: at 45 degrees a pixel of the lens covers two of them, so little of them is
     // left.
-    const Image fine =
-        lens.view.show(makePicture({512, 512}, [](std::uint32_t x, std::uint32_t) { return glm::vec3(x % 2 == 0 ? 0.0f : 1.0f); }), kLeft);
+    const Image fine = lens.view.show(
+        makePicture({512, 512},
+                    [](std::uint32_t x, std::uint32_t) { return glm::vec3(x % 2 == 0 ? 0.0f : 1.0f); }),
+        kLeft);
     const auto contrastFrom = [&](std::uint32_t first) {
         double sum = 0.0;
         for (std::uint32_t x = first; x < first + 16; ++x) {
@@ -127,36 +141,50 @@ TEST_CASE("of equal pictures nothing is seen, whatever lies beyond the lens's bo
     CHECK(worstTiles(none.tile_squares, 0.001) == 0.0);
 }
 
-TEST_CASE("an error in the middle counts through the lens as without one, at the border less, or not at all") {
+TEST_CASE(
+    "an error in the middle counts through the lens as without one, at the border less, or not at all") {
     const Lens lens;
-    const Image full = draw(nowhere, shifted), middle = draw(inTheMiddle, shifted), border = draw(atTheBorder, shifted);
+    const Image full = draw(nowhere, shifted), middle = draw(inTheMiddle, shifted),
+                border = draw(atTheBorder, shifted);
     const VisibleErrors flat_middle = findVisibleErrors({middle, middle}, {full, full}),
                         flat_border = findVisibleErrors({border, border}, {full, full});
-    const VisibleErrors seen_middle = lens.find(lens.show(middle, middle), full), seen_border = lens.find(lens.show(border, border), full);
-    const auto badTiles = [](const VisibleErrors& errors) { return errors.badShare() * static_cast<double>(errors.tile_squares.size()); };
-    CHECK(these(badTiles(flat_middle), badTiles(seen_middle)) == these(doctest::Approx(2 * 16), doctest::Approx(2 * 16)));
-    CHECK(worstTiles(seen_middle.tile_squares, 0.001) == doctest::Approx(worstTiles(flat_middle.tile_squares, 0.001)).epsilon(0.1));
+    const VisibleErrors seen_middle = lens.find(lens.show(middle, middle), full),
+                        seen_border = lens.find(lens.show(border, border), full);
+    const auto badTiles = [](const VisibleErrors& errors) {
+        return errors.badShare() * static_cast<double>(errors.tile_squares.size());
+    };
+    CHECK(these(badTiles(flat_middle), badTiles(seen_middle)) ==
+          these(doctest::Approx(2 * 16), doctest::Approx(2 * 16)));
+    CHECK(worstTiles(seen_middle.tile_squares, 0.001) ==
+          doctest::Approx(worstTiles(flat_middle.tile_squares, 0.001)).epsilon(0.1));
     CHECK(seen_middle.edge > 0.5 * flat_middle.edge);
     CHECK(these(badTiles(flat_border), badTiles(seen_border)) == these(doctest::Approx(2 * 16), 0.0));
     CHECK(seen_border.edge == 0.0);
-    CHECK(worstTiles(seen_border.tile_squares, 0.001) == between(0.0, 0.02 * worstTiles(flat_border.tile_squares, 0.001)));
+    CHECK(worstTiles(seen_border.tile_squares, 0.001) ==
+          between(0.0, 0.02 * worstTiles(flat_border.tile_squares, 0.001)));
     // Less than a hundredth of this contrast is left there, so nobody notices it.
     const auto faint = [](std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + 0.02f; };
-    const auto worst = [&](const Image& picture) { return worstTiles(lens.find(lens.show(picture, picture), full).tile_squares, 0.001); };
+    const auto worst = [&](const Image& picture) {
+        return worstTiles(lens.find(lens.show(picture, picture), full).tile_squares, 0.001);
+    };
     CHECK(worst(draw(atTheBorder, faint)) == 0.0);
     CHECK(worst(draw(inTheMiddle, faint)) > 1e-4);
 }
 
 TEST_CASE("steps between rendered tiles are seen where these meet through the lens, and less at the border") {
     const Lens lens;
-    const Image full = draw(nowhere, brighter), middle = draw(inTheMiddle, brighter), border = draw(atTheBorder, brighter);
+    const Image full = draw(nowhere, brighter), middle = draw(inTheMiddle, brighter),
+                border = draw(atTheBorder, brighter);
     const double seam_middle = lens.find(lens.show(middle, middle), full).seam,
                  seam_border = lens.find(lens.show(border, border), full).seam;
     CHECK(seam_middle > 5e-5);
     CHECK(std::abs(seam_border) < 0.2 * seam_middle);
     // The same steps inside tiles are not seams.
-    const auto moved = [](std::uint32_t x, std::uint32_t y) { return brighter(x + 8, y) - stripesAt(x + 8, y) + stripesAt(x, y); };
-    const Image within = draw([](std::uint32_t x, std::uint32_t y) { return x >= 232 && x < 280 && y >= 232 && y < 280; }, moved);
+    const auto moved = [](std::uint32_t x, std::uint32_t y) {
+        return brighter(x + 8, y) - stripesAt(x + 8, y) + stripesAt(x, y);
+    };
+    const Image within = draw(
+        [](std::uint32_t x, std::uint32_t y) { return x >= 232 && x < 280 && y >= 232 && y < 280; }, moved);
     CHECK(lens.find(lens.show(within, within), full).seam < 0.0);
     // Nor is an error that is the same everywhere, even though its steps are seen a hundred times less
     // towards the border, where tiles are small.
@@ -169,8 +197,11 @@ TEST_CASE("steps between rendered tiles are seen where these meet through the le
 TEST_CASE("blur in one eye alone is rivalry, in both eyes none, and canted eyes look at the same") {
     for (const double canting_deg : {0.0, 5.0}) {
         const Lens lens(glm::radians(canting_deg));
-        const auto blurred = [](std::uint32_t x, std::uint32_t y) { return 0.5f + 0.3f * (stripesAt(x, y) - 0.5f); };
-        const Image full = draw(nowhere, blurred), middle = draw(inTheMiddle, blurred), border = draw(atTheBorder, blurred);
+        const auto blurred = [](std::uint32_t x, std::uint32_t y) {
+            return 0.5f + 0.3f * (stripesAt(x, y) - 0.5f);
+        };
+        const Image full = draw(nowhere, blurred), middle = draw(inTheMiddle, blurred),
+                    border = draw(atTheBorder, blurred);
         const double one = lens.find(lens.show(middle, full), full).rival;
         CHECK(one > 0.1);
         CHECK(lens.find(lens.show(border, full), full).rival < 0.2 * one);
@@ -179,7 +210,8 @@ TEST_CASE("blur in one eye alone is rivalry, in both eyes none, and canted eyes 
         const glm::dvec2 middle_px = glm::dvec2(lens.view.sizePx()) / 2.0;
         for (const int side : {kLeft, kRight}) {
             const glm::dvec3 ahead =
-                glm::mat3_cast(wideEyes(glm::radians(canting_deg))[static_cast<std::size_t>(side)].world_from_camera.orientation) *
+                glm::mat3_cast(wideEyes(glm::radians(canting_deg))[static_cast<std::size_t>(side)]
+                                   .world_from_camera.orientation) *
                 lens.view.directionAt(middle_px, side);
             CHECK(glm::length(ahead - kAhead) < 1e-9);
         }

@@ -9,7 +9,8 @@
 
 SUITE(lpips) {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                kInfinity = std::numeric_limits<float>::infinity();
 
 // A file of weights that is deleted with the test.
 struct WeightsFile {
@@ -41,14 +42,16 @@ std::optional<fs::path> trainedWeights() {
     return *data / "lpips" / "squeeze_v0.1.bin";
 }
 
-TEST_CASE("the distance is that of the network's description, at every size across the boundaries of pooling") {
+TEST_CASE(
+    "the distance is that of the network's description, at every size across the boundaries of pooling") {
     // Computed in float64 with a loop for every index. Pooling halves odd sides and even ones. float32 is off
     // by 2e-7; one channel of the last stage that is 0.1 % too large changes the result by 1.5e-6.
     struct {
         glm::uvec2 size_px;
         double distance;
-    } const known[]{{{48, 34}, 0.189837957}, {{17, 34}, 0.213502645}, {{20, 31}, 0.213926525}, {{22, 29}, 0.237426691},
-                    {{24, 27}, 0.232820551}, {{26, 25}, 0.231021133}, {{34, 17}, 0.221909798}};
+    } const known[]{{{48, 34}, 0.189837957}, {{17, 34}, 0.213502645}, {{20, 31}, 0.213926525},
+                    {{22, 29}, 0.237426691}, {{24, 27}, 0.232820551}, {{26, 25}, 0.231021133},
+                    {{34, 17}, 0.221909798}};
     for (const auto& one : known) {
         CAPTURE(one.size_px.x);
         CHECK(randomLpips().measure(makeWaves(one.size_px, 0.0), makeWaves(one.size_px, 1.3)) ==
@@ -56,15 +59,20 @@ TEST_CASE("the distance is that of the network's description, at every size acro
     }
 }
 
-TEST_CASE("what a display shows alike is at distance zero, other pictures are not, and a value that is not finite is infinitely far") {
+TEST_CASE(
+    "what a display shows alike is at distance zero, other pictures are not, and a value that is not finite "
+    "is infinitely far") {
     const Lpips& lpips = randomLpips();
     const Image a = makeWaves({40, 33}, 0.0), b = makeWaves({40, 33}, 1.0);
     CHECK(lpips.measure(a, a) == 0.0);
     CHECK(lpips.measure(a, b) > 1e-3);
-    CHECK(these(lpips.measure(a, b), lpips.measure(a, b, 1)) == these(lpips.measure(b, a), lpips.measure(a, b, 3)));
-    const Image white = makeFlat({17, 17}, glm::vec3(1.0f)), brighter = makeFlat({17, 17}, glm::vec3(7.0f), 4);
+    CHECK(these(lpips.measure(a, b), lpips.measure(a, b, 1)) ==
+          these(lpips.measure(b, a), lpips.measure(a, b, 3)));
+    const Image white = makeFlat({17, 17}, glm::vec3(1.0f)),
+                brighter = makeFlat({17, 17}, glm::vec3(7.0f), 4);
     Image waves = makeWaves({17, 17}, 0.0);
-    CHECK(these(lpips.measure(brighter, white), lpips.measure(brighter, waves)) == these(0.0, lpips.measure(white, waves)));
+    CHECK(these(lpips.measure(brighter, white), lpips.measure(brighter, waves)) ==
+          these(0.0, lpips.measure(white, waves)));
     CHECK(lpips.measure(makeFlat({17, 17}, glm::vec3(-1.0f)), makeFlat({17, 17}, glm::vec3(0.0f), 4)) == 0.0);
     setPixel(waves, 16, 16, {0.5f, 0.5f, kNan});
     CHECK(lpips.measure(white, waves) == std::numeric_limits<double>::infinity());
@@ -76,9 +84,12 @@ TEST_CASE("pictures that cannot be compared are refused") {
         return randomLpips().measure(makeFlat(size_a, glm::vec3(0.5f)), makeFlat(size_b, glm::vec3(0.4f)));
     };
     CHECK(measure({17, 17}, {17, 17}) > 0.0);
-    CHECK_THROWS_WITH_AS(measure({16, 40}, {16, 40}), "LPIPS: pictures have 16x40 pixels, must have at least 17 a side", Error);
-    CHECK_THROWS_WITH_AS(measure({40, 16}, {40, 16}), "LPIPS: pictures have 40x16 pixels, must have at least 17 a side", Error);
-    CHECK_THROWS_WITH_AS(measure({20, 20}, {20, 21}), "cannot compare a picture of 20x20 pixels with one of 20x21", Error);
+    CHECK_THROWS_WITH_AS(measure({16, 40}, {16, 40}),
+                         "LPIPS: pictures have 16x40 pixels, must have at least 17 a side", Error);
+    CHECK_THROWS_WITH_AS(measure({40, 16}, {40, 16}),
+                         "LPIPS: pictures have 40x16 pixels, must have at least 17 a side", Error);
+    CHECK_THROWS_WITH_AS(measure({20, 20}, {20, 21}),
+                         "cannot compare a picture of 20x20 pixels with one of 20x21", Error);
     for (const Image& bad : {makeGrey({20, 20}, 1, 0.5f), Image{}}) {
         CHECK_THROWS_AS(static_cast<void>(randomLpips().measure(bad, bad)), Error);
     }
@@ -87,7 +98,8 @@ TEST_CASE("pictures that cannot be compared are refused") {
 TEST_CASE("broken weights are refused in one line, and so are those that overflow") {
     const auto errorOf = [](const fs::path& file) { return test::errorOf([&] { const Lpips lpips(file); }); };
     const std::string kind = "the weights of LPIPS (SqueezeNet variant, version 0.1)";
-    CHECK(errorOf("/nonexistent/w.bin") == "/nonexistent/w.bin: cannot be read (No such file or directory), must be " + kind);
+    CHECK(errorOf("/nonexistent/w.bin") ==
+          "/nonexistent/w.bin: cannot be read (No such file or directory), must be " + kind);
     CHECK(errorOf("/tmp") == "/tmp: cannot be read (Is a directory), must be " + kind);
     const std::string expected = " bytes, must have the 2898944 of " + kind;
     const std::pair<void (*)(std::vector<float>&), std::string> changes[]{
@@ -95,7 +107,8 @@ TEST_CASE("broken weights are refused in one line, and so are those that overflo
         {[](std::vector<float>& values) { values.pop_back(); }, "has 2898940" + expected},
         {[](std::vector<float>& values) { values.push_back(0.0f); }, "has 2898948" + expected},
         {[](std::vector<float>& values) { values[700] = kNan; }, "value 700 is nan, must be finite"},
-        {[](std::vector<float>& values) { values.back() = kInfinity; }, "value 724735 is inf, must be finite"},
+        {[](std::vector<float>& values) { values.back() = kInfinity; },
+         "value 724735 is inf, must be finite"},
         {[](std::vector<float>& values) { values[kNetworkWeights] = -0.5f; },
          "value 722496 is -0.5, must not be negative, as it belongs to a head"}};
     for (const auto& [change, message] : changes) {
@@ -105,14 +118,17 @@ TEST_CASE("broken weights are refused in one line, and so are those that overflo
         CHECK(errorOf(file.path) == file.path.string() + ": " + message);
     }
     const WeightsFile file(std::vector<float>(kNetworkWeights + kHeadWeights, 1e30f));
-    CHECK_THROWS_AS(static_cast<void>(Lpips(file.path).measure(makeWaves({17, 17}, 0.0), makeWaves({17, 17}, 1.0))), Error);
+    CHECK_THROWS_AS(
+        static_cast<void>(Lpips(file.path).measure(makeWaves({17, 17}, 0.0), makeWaves({17, 17}, 1.0))),
+        Error);
 }
 
 #ifdef BINOSPLAT_HAS_PNG
 TEST_CASE("the views of teddy are as far apart as another program says" * needsSharedData()) {
     const auto data = sharedData(), file = trainedWeights();
     if (!file) { return; }
-    const Image left = readPicture(*data / "middlebury/teddy/im2.png"), right = readPicture(*data / "middlebury/teddy/im6.png");
+    const Image left = readPicture(*data / "middlebury/teddy/im2.png"),
+                right = readPicture(*data / "middlebury/teddy/im6.png");
     const Lpips lpips(*file);
     CHECK(std::abs(lpips.measure(left, right) - 0.375548) < 2e-6);
     CHECK(lpips.measure(left, left) == 0.0);

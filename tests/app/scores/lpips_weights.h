@@ -15,7 +15,9 @@ inline std::vector<float> makeLpipsWeights(unsigned seed) {
     std::vector<float> values;
     const auto add = [&](std::size_t inputs, std::size_t outputs, std::size_t taps) {
         const float reach = std::sqrt(6.0f / static_cast<float>(inputs * taps));
-        for (std::size_t i = 0; i < inputs * taps * outputs; ++i) { values.push_back(reach * (2.0f * next() - 1.0f)); }
+        for (std::size_t i = 0; i < inputs * taps * outputs; ++i) {
+            values.push_back(reach * (2.0f * next() - 1.0f));
+        }
         for (std::size_t i = 0; i < outputs; ++i) { values.push_back(0.2f * (next() - 0.5f)); }
     };
     add(3, 64, 9);
@@ -32,13 +34,15 @@ inline std::vector<float> makeLpipsWeights(unsigned seed) {
 
 inline void writeFloats(const std::filesystem::path& file, const std::vector<float>& values) {
     std::ofstream(file, std::ios::binary)
-        .write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
+        .write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(float)));
 }
 
 inline std::vector<float> readFloats(const std::filesystem::path& file) {
     std::vector<float> values(std::filesystem::file_size(file) / sizeof(float));
     std::ifstream(file, std::ios::binary)
-        .read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
+        .read(reinterpret_cast<char*>(values.data()),
+              static_cast<std::streamsize>(values.size() * sizeof(float)));
     return values;
 }
 

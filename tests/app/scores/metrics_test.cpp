@@ -27,15 +27,17 @@ TEST_CASE("a value is off only beyond the threshold, and in the channels asked f
     Image a = makeGrey({10, 1}, 1, 0.0f), b = a;
     b.values[3] = 1.9f / 255.0f;
     b.values[4] = 2.1f / 255.0f;
-    CHECK(these(compare(a, b, 1).off, compare(a, b, 1).shareOff(), compare(a, b, 1, 0.0).off) == these(1, doctest::Approx(0.1), 2));
+    CHECK(these(compare(a, b, 1).off, compare(a, b, 1).shareOff(), compare(a, b, 1, 0.0).off) ==
+          these(1, doctest::Approx(0.1), 2));
     a = makeGrey({3, 3}, 4, 0.5f);
     b = makeFlat({3, 3}, glm::vec3(0.5f), 4);
-    CHECK(these(compare(a, makeGrey({3, 3}, 3, 0.5f), 3).largest, compare(a, b, 3).largest, compare(a, b, 4).largest) ==
-          these(0.0, 0.0, 0.5));
+    CHECK(these(compare(a, makeGrey({3, 3}, 3, 0.5f), 3).largest, compare(a, b, 3).largest,
+                compare(a, b, 4).largest) == these(0.0, 0.0, 0.5));
 }
 
 TEST_CASE("one value that is not finite fails, even if both pictures have it") {
-    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         Image a = makeGrey({100, 100}, 3, 0.5f);
         const Image good = a;
         a.values[1234] = bad;
@@ -71,16 +73,22 @@ TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") 
         return x / 40 % 2 == 1 ? 0.5f + 0.02f * std::sin(1.5707963f * static_cast<float>(x)) : 0.375f;
     };
     const auto draw = [&](auto&& change) {
-        return makePicture({128, 64}, [&](std::uint32_t x, std::uint32_t y) { return glm::vec3(change(x, y, patternAt(x))); });
+        return makePicture({128, 64}, [&](std::uint32_t x, std::uint32_t y) {
+            return glm::vec3(change(x, y, patternAt(x)));
+        });
     };
     const Image full = draw([](std::uint32_t, std::uint32_t, float grey) { return grey; });
-    const auto errorsOf = [&](const Image& left, const Image& right) { return findVisibleErrors({left, right}, {full, full}); };
+    const auto errorsOf = [&](const Image& left, const Image& right) {
+        return findVisibleErrors({left, right}, {full, full});
+    };
 
     const VisibleErrors none = errorsOf(full, full);
     CHECK(none.tile_squares == std::vector<float>(64, 0.0f));
     CHECK((none.badShare() == 0.0 && none.edge == 0.0 && none.seam == 0.0 && none.rival == 0.0));
 
-    const Image shifted = draw([&](std::uint32_t x, std::uint32_t, float) { return x / 40 % 2 == 1 ? patternAt(x) : patternAt(x + 1); });
+    const Image shifted = draw([&](std::uint32_t x, std::uint32_t, float) {
+        return x / 40 % 2 == 1 ? patternAt(x) : patternAt(x + 1);
+    });
     const VisibleErrors edges = errorsOf(shifted, shifted);
     CHECK(edges.edge > 0.3);
     CHECK(edges.badShare() == 0.0);
@@ -88,37 +96,44 @@ TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") 
     CHECK(edges.rival == 0.0);
 
     const auto isTile = [](std::uint32_t x, std::uint32_t y) { return x / 16 == 3 && y / 16 == 1; };
-    const Image blurred = draw([&](std::uint32_t x, std::uint32_t y, float grey) { return isTile(x, y) ? 0.5f : grey; });
+    const Image blurred =
+        draw([&](std::uint32_t x, std::uint32_t y, float grey) { return isTile(x, y) ? 0.5f : grey; });
     const VisibleErrors rivals = errorsOf(blurred, full);
     CHECK(rivals.rival > 0.3);
     CHECK(these(rivals.badShare(), rivals.edge) == these(0.0, 0.0));
     CHECK(rivals.seam < 4e-4);  // a tenth of a step of 255
     CHECK(errorsOf(blurred, blurred).rival == 0.0);
 
-    const Image stepped =
-        draw([](std::uint32_t x, std::uint32_t y, float grey) { return grey + ((x / 16 + y / 16) % 2 == 0 ? 0.02f : 0.0f); });
+    const Image stepped = draw([](std::uint32_t x, std::uint32_t y, float grey) {
+        return grey + ((x / 16 + y / 16) % 2 == 0 ? 0.02f : 0.0f);
+    });
     const VisibleErrors seams = errorsOf(stepped, stepped);
     CHECK(seams.seam == doctest::Approx(0.02).epsilon(0.02));  // 5 steps of 255
     CHECK(these(seams.badShare(), seams.edge) == these(0.0, 0.0));
     CHECK(seams.rival < 0.01);
 
-    const Image streaked = draw([](std::uint32_t x, std::uint32_t y, float grey) { return x < 16 ? (y % 8 < 4 ? 0.3f : 0.5f) : grey; });
+    const Image streaked = draw([](std::uint32_t x, std::uint32_t y, float grey) {
+        return x < 16 ? (y % 8 < 4 ? 0.3f : 0.5f) : grey;
+    });
     const VisibleErrors streaks = errorsOf(streaked, streaked);
     CHECK(streaks.badShare() == doctest::Approx(1.0 / 8.0));
     CHECK(worstTiles(streaks.tile_squares, 1.0 / 8.0) > kBadTileSquare);
-    CHECK(worstTiles(streaks.tile_squares, 1.0) == doctest::Approx(worstTiles(streaks.tile_squares, 1.0 / 8.0) / 8.0));
+    CHECK(worstTiles(streaks.tile_squares, 1.0) ==
+          doctest::Approx(worstTiles(streaks.tile_squares, 1.0 / 8.0) / 8.0));
     CHECK(streaks.edge < 0.01);
     CHECK(streaks.rival == 0.0);
 }
 
 TEST_CASE("a picture is scaled up by a cubic that keeps constants, and ramps within its borders") {
     CHECK(scaleUp(makeWaves({17, 9}, 0.0), {17, 9}).values == makeWaves({17, 9}, 0.0).values);
-    const Image ramp =
-        makePicture({20, 10}, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(glm::dvec3(0.02 * x, 0.03 * y, 0.5)); });
+    const Image ramp = makePicture({20, 10}, [](std::uint32_t x, std::uint32_t y) {
+        return glm::vec3(glm::dvec3(0.02 * x, 0.03 * y, 0.5));
+    });
     const Image scaled = scaleUp(ramp, {50, 25});
     CHECK(scaled.size_px == glm::uvec2(50, 25));
     for (const glm::uvec2 at : {glm::uvec2(10, 10), glm::uvec2(23, 12), glm::uvec2(40, 17)}) {
-        const glm::vec3 expected(glm::dvec3(0.02 * ((at.x + 0.5) * 0.4 - 0.5), 0.03 * ((at.y + 0.5) * 0.4 - 0.5), 0.5));
+        const glm::vec3 expected(
+            glm::dvec3(0.02 * ((at.x + 0.5) * 0.4 - 0.5), 0.03 * ((at.y + 0.5) * 0.4 - 0.5), 0.5));
         CHECK(glm::length(colourOf(scaled, at.x, at.y) - expected) < 1e-6f);
     }
     CHECK(colourOf(scaled, 0, 0).z == doctest::Approx(0.5f));

@@ -6,7 +6,8 @@
 
 SUITE(scores) {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                kInfinity = std::numeric_limits<float>::infinity();
 
 struct Score {
     const char* name;
@@ -18,7 +19,9 @@ struct Score {
     double hardly;            // and at most, for a shift by a ten-thousandth of a pixel
 
     [[nodiscard]] double mean(const Image& a, const Image& b) const { return of(a, b, 2).mean().value(); }
-    [[nodiscard]] double off(const Image& a, const Image& b) const { return std::abs(mean(a, b) - static_cast<double>(alike)); }
+    [[nodiscard]] double off(const Image& a, const Image& b) const {
+        return std::abs(mean(a, b) - static_cast<double>(alike));
+    }
 };
 
 template <Border border>
@@ -26,10 +29,12 @@ PixelScores ssimWith(const Image& a, const Image& b, int threads) {
     return ssim(a, b, border, threads);
 }
 
-const Score kScores[]{{"SSIM", ssimWith<Border::kCutWindow>, 1.0f, -1.0f, 2e-6f, 2e-5, 0.1, 0.3, 1e-3},
-                      {"SSIM with zeros around", ssimWith<Border::kZero>, 1.0f, -1.0f, 2e-6f, 2e-5, 0.1, 0.3, 1e-3},
-                      {"FLIP", [](const Image& a, const Image& b, int threads) { return flip(a, b, kFlipPixelsPerDegree, threads); }, 0.0f,
-                       1.0f, 0.0f, 1e-4, 0.1, 0.2, 1e-2}};
+const Score kScores[]{
+    {"SSIM", ssimWith<Border::kCutWindow>, 1.0f, -1.0f, 2e-6f, 2e-5, 0.1, 0.3, 1e-3},
+    {"SSIM with zeros around", ssimWith<Border::kZero>, 1.0f, -1.0f, 2e-6f, 2e-5, 0.1, 0.3, 1e-3},
+    {"FLIP",
+     [](const Image& a, const Image& b, int threads) { return flip(a, b, kFlipPixelsPerDegree, threads); },
+     0.0f, 1.0f, 0.0f, 1e-4, 0.1, 0.2, 1e-2}};
 
 constexpr double kC1 = 1e-4, kC2 = 9e-4;
 
@@ -42,40 +47,53 @@ struct Known {
     double score;
 };
 
-double hyab(const glm::dvec3& a, const glm::dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
+double hyab(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
+}
 
 // HyAB of hunt-adjusted green and blue, from the textbook Lab of sRGB's primaries: green (87.735, -86.183,
 // 83.180) and blue (32.299, 79.191, -107.865).
-const double kLargest = std::pow(hyab({87.735, 0.87735 * -86.183, 0.87735 * 83.180}, {32.299, 0.32299 * 79.191, 0.32299 * -107.865}), 0.7);
+const double kLargest = std::pow(
+    hyab({87.735, 0.87735 * -86.183, 0.87735 * 83.180}, {32.299, 0.32299 * 79.191, 0.32299 * -107.865}), 0.7);
 
 double colourScore(double distance) {
     const double difference = std::pow(distance, 0.7), knee = 0.4 * kLargest;
-    return difference < knee ? 0.95 * difference / knee : 0.95 + 0.05 * (difference - knee) / (kLargest - knee);
+    return difference < knee ? 0.95 * difference / knee
+                             : 0.95 + 0.05 * (difference - knee) / (kLargest - knee);
 }
 
 bool isNear(const glm::vec3& a, const glm::vec3& b, float tolerance) {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::vec3(tolerance)));
 }
 
-TEST_CASE("a score is the same from either side, in a mirror and on any number of threads, and best for what a display shows alike") {
+TEST_CASE(
+    "a score is the same from either side, in a mirror and on any number of threads, and best for what a "
+    "display shows alike") {
     const Image a = makeWaves({50, 200}, 0.0), b = makeWaves({50, 200}, 0.3);
     const auto mirror = [](const Image& image) {
-        return makePicture(image.size_px, [&](std::uint32_t x, std::uint32_t y) { return colourOf(image, image.size_px.x - 1 - x, y); });
+        return makePicture(image.size_px, [&](std::uint32_t x, std::uint32_t y) {
+            return colourOf(image, image.size_px.x - 1 - x, y);
+        });
     };
     const Image black = makeFlat({12, 12}, glm::vec3(0.0f)), white = makeFlat({12, 12}, glm::vec3(1.0f));
     for (const Score& score : kScores) {
         CAPTURE(std::string(score.name));
         const PixelScores forward = score.of(a, b, 1);
-        CHECK(these(forward.values, forward.values) == these(score.of(a, b, 3).values, score.of(b, a, 2).values));
+        CHECK(these(forward.values, forward.values) ==
+              these(score.of(a, b, 3).values, score.of(b, a, 2).values));
         CHECK(std::abs(score.mean(mirror(a), mirror(b)) - forward.mean().value()) < score.mirror_rounding);
-        for (const auto& [one, other] : {std::pair(a, a), std::pair(white, makeFlat({12, 12}, glm::vec3(3.0f), 4)),
-                                         std::pair(black, makeFlat({12, 12}, glm::vec3(-3.0f)))}) {
-            for (const float value : score.of(one, other, 2).values) { CHECK(std::abs(value - score.alike) <= score.rounding); }
+        for (const auto& [one, other] :
+             {std::pair(a, a), std::pair(white, makeFlat({12, 12}, glm::vec3(3.0f), 4)),
+              std::pair(black, makeFlat({12, 12}, glm::vec3(-3.0f)))}) {
+            for (const float value : score.of(one, other, 2).values) {
+                CHECK(std::abs(value - score.alike) <= score.rounding);
+            }
         }
     }
 }
 
-TEST_CASE("a shift by one pixel and swapped eyes are detected, a shift by next to nothing is next to nothing") {
+TEST_CASE(
+    "a shift by one pixel and swapped eyes are detected, a shift by next to nothing is next to nothing") {
     const Image left = makeWaves({64, 64}, 1.5);
     for (const Score& score : kScores) {
         CAPTURE(std::string(score.name));
@@ -93,8 +111,11 @@ TEST_CASE("a pixel that is not finite scores worst, alone, even if both pictures
         for (const Score& score : kScores) {
             for (const PixelScores& scores : {score.of(a, b, 2), score.of(b, b, 2)}) {
                 CHECK(scores.values[2 * 20 + 3] == score.worst);
-                const float least = std::min(score.alike, score.worst), most = std::max(score.alike, score.worst);
-                for (const float value : scores.values) { CHECK((value >= least && value <= most + score.rounding)); }
+                const float least = std::min(score.alike, score.worst),
+                            most = std::max(score.alike, score.worst);
+                for (const float value : scores.values) {
+                    CHECK((value >= least && value <= most + score.rounding));
+                }
             }
         }
     }
@@ -113,8 +134,11 @@ TEST_CASE("pictures that cannot be compared are refused, and empty ones have no 
     CHECK(pixelsPerDegree(3840.0) == doctest::Approx(kFlipPixelsPerDegree));
 }
 
-TEST_CASE("between flat pictures SSIM is the luminance term, of any size, and an opposite pattern is below zero") {
-    const auto flat = [](glm::uvec2 size_px, float grey, int channels = 3) { return makeFlat(size_px, glm::vec3(grey), channels); };
+TEST_CASE(
+    "between flat pictures SSIM is the luminance term, of any size, and an opposite pattern is below zero") {
+    const auto flat = [](glm::uvec2 size_px, float grey, int channels = 3) {
+        return makeFlat(size_px, glm::vec3(grey), channels);
+    };
     const double expected = luminanceTerm(0.4, 0.5);
     const Image a = flat({20, 15}, 0.4f), b = flat({20, 15}, 0.5f, 4);
     for (const float score : ssim(a, b).values) { CHECK(score == doctest::Approx(expected).epsilon(5e-4)); }
@@ -122,9 +146,12 @@ TEST_CASE("between flat pictures SSIM is the luminance term, of any size, and an
     const PixelScores zero = ssim(a, b, Border::kZero);
     CHECK(zero.values[7 * 20 + 10] == doctest::Approx(expected).epsilon(5e-4));
     CHECK(std::abs(static_cast<double>(zero.values[0]) - expected) > 1e-3);
-    const PixelScores pixel = ssim(makeFlat({1, 1}, {0.2f, 0.6f, 1.0f}), makeFlat({1, 1}, {0.1f, 0.6f, 0.0f}));
-    CHECK(pixel.mean().value() == doctest::Approx((luminanceTerm(0.2, 0.1) + 1.0 + luminanceTerm(1.0, 0.0)) / 3.0).epsilon(1e-4));
-    CHECK(ssim(flat({16, 16}, 0.0f), flat({16, 16}, 1.0f)).mean().value() == doctest::Approx(kC1 / (1.0 + kC1)).epsilon(1e-3));
+    const PixelScores pixel =
+        ssim(makeFlat({1, 1}, {0.2f, 0.6f, 1.0f}), makeFlat({1, 1}, {0.1f, 0.6f, 0.0f}));
+    CHECK(pixel.mean().value() ==
+          doctest::Approx((luminanceTerm(0.2, 0.1) + 1.0 + luminanceTerm(1.0, 0.0)) / 3.0).epsilon(1e-4));
+    CHECK(ssim(flat({16, 16}, 0.0f), flat({16, 16}, 1.0f)).mean().value() ==
+          doctest::Approx(kC1 / (1.0 + kC1)).epsilon(1e-3));
     Image waves = makeWaves({32, 32}, 0.0), opposite = waves;
     for (float& value : opposite.values) { value = 1.0f - value; }
     CHECK(ssim(waves, opposite).mean().value() < -0.5);
@@ -142,10 +169,13 @@ TEST_CASE("every pixel's SSIM is the definition's, which sees 11 by 11 pixels") 
                             {20, 64, 0.896779036},
                             {20, 59, 0.939115304},
                             {18, 35, 0.942502200}}) {
-        CHECK(static_cast<double>(scores.values[at.y * 37 + at.x]) == doctest::Approx(at.score).epsilon(1e-4));
+        CHECK(static_cast<double>(scores.values[at.y * 37 + at.x]) ==
+              doctest::Approx(at.score).epsilon(1e-4));
     }
-    for (const Known& at : {Known{0, 0, 0.964917965}, {36, 69, 0.971055345}, {5, 0, 0.965745809}, {0, 30, 0.961475773}}) {
-        CHECK(static_cast<double>(with_zeros.values[at.y * 37 + at.x]) == doctest::Approx(at.score).epsilon(1e-4));
+    for (const Known& at :
+         {Known{0, 0, 0.964917965}, {36, 69, 0.971055345}, {5, 0, 0.965745809}, {0, 30, 0.961475773}}) {
+        CHECK(static_cast<double>(with_zeros.values[at.y * 37 + at.x]) ==
+              doctest::Approx(at.score).epsilon(1e-4));
     }
     const Image a = makeFlat({31, 31}, glm::vec3(0.5f));
     Image b = a;
@@ -163,28 +193,41 @@ TEST_CASE("between flat pictures FLIP is their colours' difference, of any size"
         return flip(makeFlat(size_px, a), makeFlat(size_px, b, 4)).mean().value();
     };
     // Black and white differ by 100 in lightness.
-    CHECK(meanFlip({9, 9}, glm::vec3(0.0f), glm::vec3(1.0f)) == doctest::Approx(colourScore(100.0)).epsilon(1e-4));
-    CHECK(static_cast<double>(flipColourDifference(glm::vec3(0.0f), glm::vec3(1.0f))) == doctest::Approx(colourScore(100.0)).epsilon(1e-4));
+    CHECK(meanFlip({9, 9}, glm::vec3(0.0f), glm::vec3(1.0f)) ==
+          doctest::Approx(colourScore(100.0)).epsilon(1e-4));
+    CHECK(static_cast<double>(flipColourDifference(glm::vec3(0.0f), glm::vec3(1.0f))) ==
+          doctest::Approx(colourScore(100.0)).epsilon(1e-4));
     // Encoded greys 0.5 and 0.55 have L* 53.389 and 58.165: below the knee.
     const double dark = 116.0 * std::cbrt(std::pow((0.5 + 0.055) / 1.055, 2.4)) - 16.0,
                  light = 116.0 * std::cbrt(std::pow((0.55 + 0.055) / 1.055, 2.4)) - 16.0;
-    for (const float score : flip(makeFlat({9, 9}, glm::vec3(0.5f)), makeFlat({9, 9}, glm::vec3(0.55f))).values) {
+    for (const float score :
+         flip(makeFlat({9, 9}, glm::vec3(0.5f)), makeFlat({9, 9}, glm::vec3(0.55f))).values) {
         CHECK(score == doctest::Approx(colourScore(light - dark)).epsilon(1e-3));
     }
     // The largest difference that the score tells apart is green against blue.
     CHECK(meanFlip({9, 9}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}) == doctest::Approx(1.0).epsilon(1e-5));
     const glm::vec3 one{0.2f, 0.7f, 0.4f}, other{0.9f, 0.1f, 0.3f};
     CHECK(meanFlip({1, 1}, one, other) ==
-          doctest::Approx(static_cast<double>(flipColourDifference(linearFromEncoded(one), linearFromEncoded(other)))).epsilon(1e-4));
+          doctest::Approx(
+              static_cast<double>(flipColourDifference(linearFromEncoded(one), linearFromEncoded(other))))
+              .epsilon(1e-4));
 }
 
 TEST_CASE("every pixel's FLIP is the paper's, and lies from 0 to 1 at every size and distance") {
     const Image a = makeWaves({33, 70}, 0.0), b = makeWaves({33, 70}, 0.9);
     const PixelScores near = flip(a, b, 20.0), far = flip(a, b);
-    for (const Known& at : {Known{0, 0, 0.5390366}, {32, 69, 0.5111377}, {16, 35, 0.5051623}, {3, 64, 0.5123770}, {20, 63, 0.3907326}}) {
+    for (const Known& at : {Known{0, 0, 0.5390366},
+                            {32, 69, 0.5111377},
+                            {16, 35, 0.5051623},
+                            {3, 64, 0.5123770},
+                            {20, 63, 0.3907326}}) {
         CHECK(static_cast<double>(near.values[at.y * 33 + at.x]) == doctest::Approx(at.score).epsilon(2e-3));
     }
-    for (const Known& at : {Known{0, 0, 0.4991233}, {32, 69, 0.5331954}, {16, 35, 0.4503161}, {3, 64, 0.4495015}, {20, 63, 0.3438545}}) {
+    for (const Known& at : {Known{0, 0, 0.4991233},
+                            {32, 69, 0.5331954},
+                            {16, 35, 0.4503161},
+                            {3, 64, 0.4495015},
+                            {20, 63, 0.3438545}}) {
         CHECK(static_cast<double>(far.values[at.y * 33 + at.x]) == doctest::Approx(at.score).epsilon(2e-3));
     }
     for (const glm::uvec2 size_px : {glm::uvec2{1, 1}, {1, 40}, {17, 1}, {2, 3}, {16, 65}}) {
@@ -198,8 +241,8 @@ TEST_CASE("every pixel's FLIP is the paper's, and lies from 0 to 1 at every size
 TEST_CASE("means by class are over that class alone") {
     const PixelScores scores{{2, 2}, {0.25f, 0.5f, 1.0f, 0.0f}};
     const std::vector<std::uint8_t> classes{1, 1, 0, 4};
-    CHECK(these(scores.mean(), scores.meanWhere(classes, 1), scores.meanWhere(classes, 0), scores.meanWhere(classes, 2).has_value()) ==
-          these(0.4375, 0.375, 1.0, false));
+    CHECK(these(scores.mean(), scores.meanWhere(classes, 1), scores.meanWhere(classes, 0),
+                scores.meanWhere(classes, 2).has_value()) == these(0.4375, 0.375, 1.0, false));
     CHECK_THROWS_AS(static_cast<void>(scores.meanWhere(std::vector<std::uint8_t>{1}, 1)), Error);
 }
 
@@ -210,11 +253,12 @@ TEST_CASE("colours have the figures of their standards, there and back") {
         float tolerance;
         glm::vec3 lab;
         float lab_tolerance;
-    } const colours[]{{glm::vec3(1.0f), {0.95046f, 1.0f, 1.08906f}, 1e-5f, {100.0f, 0.0f, 0.0f}, 1e-4f},
-                      {glm::vec3(0.0f), glm::vec3(0.0f), 0.0f, glm::vec3(0.0f), 1e-4f},
-                      {{1.0f, 0.0f, 0.0f}, {0.4124f, 0.2126f, 0.0193f}, 5.1e-5f, {53.24f, 80.09f, 67.20f}, 0.02f},
-                      {{0.0f, 1.0f, 0.0f}, {0.3576f, 0.7152f, 0.1192f}, 5.1e-5f, {87.735f, -86.183f, 83.180f}, 0.02f},
-                      {{0.0f, 0.0f, 1.0f}, {0.1805f, 0.0722f, 0.9505f}, 5.1e-5f, {32.30f, 79.19f, -107.86f}, 0.02f}};
+    } const colours[]{
+        {glm::vec3(1.0f), {0.95046f, 1.0f, 1.08906f}, 1e-5f, {100.0f, 0.0f, 0.0f}, 1e-4f},
+        {glm::vec3(0.0f), glm::vec3(0.0f), 0.0f, glm::vec3(0.0f), 1e-4f},
+        {{1.0f, 0.0f, 0.0f}, {0.4124f, 0.2126f, 0.0193f}, 5.1e-5f, {53.24f, 80.09f, 67.20f}, 0.02f},
+        {{0.0f, 1.0f, 0.0f}, {0.3576f, 0.7152f, 0.1192f}, 5.1e-5f, {87.735f, -86.183f, 83.180f}, 0.02f},
+        {{0.0f, 0.0f, 1.0f}, {0.1805f, 0.0722f, 0.9505f}, 5.1e-5f, {32.30f, 79.19f, -107.86f}, 0.02f}};
     for (const auto& colour : colours) {
         CHECK(isNear(xyzFromLinear(colour.rgb), colour.xyz, colour.tolerance));
         CHECK(isNear(labFromXyz(xyzFromLinear(colour.rgb)), colour.lab, colour.lab_tolerance));
@@ -224,7 +268,8 @@ TEST_CASE("colours have the figures of their standards, there and back") {
     // Encoded 0.5 is linear 0.21404; middle grey 119/255 is 0.1845; the straight part ends at 0.04045 /
     // 12.92.
     CHECK(isNear(linearFromEncoded({0.0f, 0.5f, 1.0f}), {0.0f, 0.21404f, 1.0f}, 1e-5f));
-    CHECK(isNear(linearFromEncoded({0.04045f, 0.04046f, 119.0f / 255.0f}), {0.0031308f, 0.0031316f, 0.18447f}, 1e-5f));
+    CHECK(isNear(linearFromEncoded({0.04045f, 0.04046f, 119.0f / 255.0f}), {0.0031308f, 0.0031316f, 0.18447f},
+                 1e-5f));
     for (const glm::vec3& rgb : {glm::vec3(0.1f, 0.5f, 0.9f), {1.0f, 0.0f, 0.3f}, {0.0f, 0.0f, 0.0f}}) {
         const glm::vec3 xyz = xyzFromLinear(rgb);
         CHECK(isNear(linearFromXyz(xyz), rgb, 1e-6f));

@@ -33,7 +33,9 @@ void checkSeesOnlyTheFirst(const Context& context, const Stage& stage, std::size
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode" * nightly()) {
+TEST_CASE_FIXTURE(Gpu,
+                  "every case is finite, repeats and keeps to its bounds beside the twin, in every mode" *
+                      nightly()) {
     std::set<std::string> names;
     CaseRunner runner(context());
     for (const Case& one : makeCatalogue()) {
@@ -44,7 +46,8 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
         const CaseScore score = runner.run(one);
         CHECK(score.pictures.size() == 11);
         for (const PictureScore& picture : score.pictures) {
-            INFO(one.name() << ", " << nameOf(picture.mode) << ", " << picture.eye << ": " << picture.psnr_db << " dB");
+            INFO(one.name() << ", " << nameOf(picture.mode) << ", " << picture.eye << ": " << picture.psnr_db
+                            << " dB");
             CHECK(picture.not_finite == 0);
             CHECK(picture.repeats);
             CHECK(picture.passes);
@@ -52,7 +55,10 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes sees no more change at a time than the twin's" * nightly()) {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "an eye that goes through discs and along their planes sees no more change at a time than the twin's" *
+        nightly()) {
     CaseRunner runner(context());
     for (const Path& path : makePaths()) {
         const PathScore score = runner.run(path);
@@ -63,7 +69,10 @@ TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes se
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to their bounds beside full renders, however long" * nightly()) {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "pictures that are made from the ones before keep to their bounds beside full renders, however long" *
+        nightly()) {
     CaseRunner runner(context());
     for (const Sequence& sequence : makeSequences()) {
         const SequenceScore score = runner.run(sequence);
@@ -75,8 +84,10 @@ TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to thei
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "splats with a broken attribute, or of which dimming leaves nothing, change no byte, discs or Gaussians" * nightly()) {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "splats with a broken attribute, or of which dimming leaves nothing, change no byte, discs or Gaussians" *
+        nightly()) {
     for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (const bool gaussians : {false, true}) {
             const Stage stage = gaussians ? makeBrokenGaussians(broken) : makeBrokenAttributes(broken);

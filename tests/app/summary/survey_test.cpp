@@ -18,21 +18,27 @@ void addSplat(Scene& scene, const glm::vec3& position, const glm::vec3& scales, 
 Scene makePatch() {
     Scene scene;
     for (int i = 0; i < 40'000; ++i) {
-        addSplat(scene, glm::vec3(0.05f * static_cast<float>(i % 200), 0.05f * static_cast<float>(i / 200), 0.0f), glm::vec3(0.01f), 0.5f);
+        addSplat(scene,
+                 glm::vec3(0.05f * static_cast<float>(i % 200), 0.05f * static_cast<float>(i / 200), 0.0f),
+                 glm::vec3(0.01f), 0.5f);
     }
     return scene;
 }
 
 TEST_CASE("opacities, thicknesses and sizes are counted against their bounds") {
     Scene scene;  // a thousand splats of a centimetre, one unit apart, in a cube with a side of 9
-    for (int i = 0; i < 1000; ++i) { addSplat(scene, glm::vec3(i / 100, i / 10 % 10, i % 10), glm::vec3(0.01f), 0.5f); }
+    for (int i = 0; i < 1000; ++i) {
+        addSplat(scene, glm::vec3(i / 100, i / 10 % 10, i % 10), glm::vec3(0.01f), 0.5f);
+    }
     const SceneSurvey before = surveyScene(scene);
-    CHECK(these(before.size, before.transparent + before.opaque + before.thin + before.large) == these(doctest::Approx(9.0), 0));
+    CHECK(these(before.size, before.transparent + before.opaque + before.thin + before.large) ==
+          these(doctest::Approx(9.0), 0));
     addSplat(scene, glm::vec3(4), {0.01f, 0.01f, 0.0009f}, 0.9901f);
     addSplat(scene, glm::vec3(4), {0.01f, 0.91f, 0.0011f}, 0.9899f);
     addSplat(scene, glm::vec3(4), {0.01f, 0.89f, 0.01f}, 0.0039f);
     const SceneSurvey survey = surveyScene(scene);
-    CHECK(these(survey.size, survey.transparent, survey.opaque, survey.thin, survey.large) == these(doctest::Approx(9.0), 1, 1, 1, 1));
+    CHECK(these(survey.size, survey.transparent, survey.opaque, survey.thin, survey.large) ==
+          these(doctest::Approx(9.0), 1, 1, 1, 1));
     CHECK(surveyScene(scene, 0.1).thin == 2);  // a unit is a decimetre
     scene.thicknesses.clear();
     CHECK(surveyScene(scene).thin == 0);  // of a disc, the shorter axis counts

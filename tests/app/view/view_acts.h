@@ -36,10 +36,12 @@ inline std::string pointingAt(const Panel& panel, const glm::dvec2& share) {
     const glm::dvec3 on_panel((share.x - 0.5) * kPanelMetres.x, (0.5 - share.y) * kPanelMetres.y, 0.3);
     const glm::dvec3 at = panel.middle + panel.orientation * on_panel;
     const glm::dquat& q = panel.orientation;
-    return fmt::format("position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}", at.x, at.y, at.z, q.x, q.y, q.z, q.w);
+    return fmt::format("position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}", at.x, at.y, at.z,
+                       q.x, q.y, q.z, q.w);
 }
 // Pointing at the floor.
-inline const std::string kLeftDown = "position -0.2 1.2 -0.35 turn 0 -80", kRightDown = "position 0.2 1.2 -0.35 turn 0 -80";
+inline const std::string kLeftDown = "position -0.2 1.2 -0.35 turn 0 -80",
+                         kRightDown = "position 0.2 1.2 -0.35 turn 0 -80";
 
 // Builds a script, act by act. The left hand points at the floor.
 class Acts {
@@ -72,7 +74,8 @@ public:
     }
     // Of "head", "controller left" or "controller right".
     Acts& move(const std::string& who, const std::string& pose, double seconds = 0.02) {
-        text_ += fmt::format("{0} {1:.3f} {2}\n{0} {3:.3f} {4}\n", who, now_s, poses_[who], now_s + seconds, pose);
+        text_ +=
+            fmt::format("{0} {1:.3f} {2}\n{0} {3:.3f} {4}\n", who, now_s, poses_[who], now_s + seconds, pose);
         poses_[who] = pose;
         return wait(seconds + 0.001);
     }
@@ -84,19 +87,28 @@ public:
     }
     Acts& push(const std::string& stick, const glm::dvec2& to, double seconds) {
         for (const auto& [time_s, place] :
-             {std::pair(0.0, glm::dvec2(0.0)), std::pair(0.01, to), std::pair(seconds, to), std::pair(seconds + 0.01, glm::dvec2(0.0))}) {
+             {std::pair(0.0, glm::dvec2(0.0)), std::pair(0.01, to), std::pair(seconds, to),
+              std::pair(seconds + 0.01, glm::dvec2(0.0))}) {
             text_ += fmt::format("axis {} {:.3f} {} {}\n", stick, now_s + time_s, place.x, place.y);
         }
         return *this;
     }
     Acts& pull(const std::string& input, const std::vector<std::pair<double, double>>& values) {
-        for (const auto& [time_s, value] : values) { text_ += fmt::format("axis {} {:.3f} {}\n", input, now_s + time_s, value); }
+        for (const auto& [time_s, value] : values) {
+            text_ += fmt::format("axis {} {:.3f} {}\n", input, now_s + time_s, value);
+        }
         return *this;
     }
-    Acts& press(const std::string& input, double seconds = 0.05) { return hold(input, seconds).wait(2.0 * seconds); }
+    Acts& press(const std::string& input, double seconds = 0.05) {
+        return hold(input, seconds).wait(2.0 * seconds);
+    }
     // Points the right hand at a place on the panel.
-    Acts& point(const glm::dvec2& share) { return move("controller right", pointingAt(panel, share)).wait(0.03); }
-    Acts& click(const glm::dvec2& share, const std::string& input = "right trigger") { return point(share).press(input); }
+    Acts& point(const glm::dvec2& share) {
+        return move("controller right", pointingAt(panel, share)).wait(0.03);
+    }
+    Acts& click(const glm::dvec2& share, const std::string& input = "right trigger") {
+        return point(share).press(input);
+    }
 
     // The whole script, with the wearer leaving now.
     [[nodiscard]] std::string script() const { return text_ + fmt::format("at {:.3f} exit\n", now_s); }
@@ -108,20 +120,25 @@ private:
 
 // Compares both eyes of a frame with what `binosplat render` makes of the fence from the head's logged pose.
 // The wearer stood at `start` in the scene, looking along its z, when the head was at (0, 1.6, 0).
-inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame, const glm::dvec3& start,
-                                  const std::string& arguments) {
+inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame,
+                                  const glm::dvec3& start, const std::string& arguments) {
     CAPTURE(frame);
     const LoggedPose head = poseOf(run.frames.at(frame).at("head"));
     const auto inScene = [](const glm::dvec3& v) { return glm::dvec3(v.x, -v.y, -v.z); };
     const glm::dvec3 eye = start + inScene(head.position - glm::dvec3(0.0, 1.6, 0.0));
-    const glm::dvec3 look = eye + inScene(head.orientation * glm::dvec3(0, 0, -1)), up = inScene(head.orientation * glm::dvec3(0, 1, 0));
-    const auto numbers = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
-    const Outcome rendered = work.run(fmt::format("render builtin:fence --order distance --out expected --eye {} --look {} --up {} {}",
-                                                  numbers(eye), numbers(look), numbers(up), arguments));
+    const glm::dvec3 look = eye + inScene(head.orientation * glm::dvec3(0, 0, -1)),
+                     up = inScene(head.orientation * glm::dvec3(0, 1, 0));
+    const auto numbers = [](const glm::dvec3& v) {
+        return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z);
+    };
+    const Outcome rendered = work.run(
+        fmt::format("render builtin:fence --order distance --out expected --eye {} --look {} --up {} {}",
+                    numbers(eye), numbers(look), numbers(up), arguments));
     INFO(rendered.errors);
     REQUIRE(rendered.exit_code == 0);
     for (const int side : {kLeft, kRight}) {
-        const Image expected = readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
+        const Image expected =
+            readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
         CAPTURE(side);
         CHECK(compare(run.eye(frame, side), expected).psnrDb() > 50.0);
         // It must not agree for the other eye.
@@ -139,7 +156,8 @@ struct KeptPlace {
 };
 inline std::vector<KeptPlace> keptPlaces(const Workplace& work) {
     std::vector<KeptPlace> kept;
-    for (const auto& file : std::filesystem::directory_iterator(work.base / "config" / "binosplat" / "scenes")) {
+    for (const auto& file :
+         std::filesystem::directory_iterator(work.base / "config" / "binosplat" / "scenes")) {
         if (!file.path().string().ends_with(".viewpoints.json")) { continue; }
         std::ifstream text(file.path());
         const nlohmann::json document = nlohmann::json::parse(text);

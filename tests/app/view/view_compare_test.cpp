@@ -9,7 +9,8 @@ const std::string kFirst = "builtin:fence", kSecond = "builtin:slanted-wall";
 const std::string kPlace = " --eye 0,0,-1 --look 0,0,3 --up 0,-1,0";
 
 TEST_CASE(
-    "while a button is held the other scene is seen from the same place, at once and whole; the comparison ends where it is told to") {
+    "while a button is held the other scene is seen from the same place, at once and whole; the comparison "
+    "ends where it is told to") {
     const Workplace work;
     // The lines before the eyes are over by then. The head turns between the two times.
     Acts acts("rate 20\nsize 96 96\nframes from 140 to 220\n");
@@ -17,14 +18,16 @@ TEST_CASE(
     acts.hold("right a", 0.4).wait(0.6).move("head", "position 0.1 1.55 0.1 turn 20 5", 0.3).wait(0.1);
     acts.hold("left x", 0.4).wait(0.6);
     const std::string headset = " --load-first --hide-panel --hide-hands --axes view" + kPlace;
-    const ViewRun run = runClean(work, "both", acts.script(), kFirst + " --compare " + kSecond + " --mode temporal" + headset);
+    const ViewRun run = runClean(work, "both", acts.script(),
+                                 kFirst + " --compare " + kSecond + " --mode temporal" + headset);
     const ViewRun first = runClean(work, "first", acts.script(), kFirst + " --mode shared" + headset);
     const ViewRun second = runClean(work, "second", acts.script(), kSecond + " --mode shared" + headset);
-    checkOrder(run, {"compares " + kFirst + " with " + kSecond, "hold X or A", "shows " + kSecond, "shows " + kFirst, "shows " + kSecond,
-                     "shows " + kFirst});
+    checkOrder(run, {"compares " + kFirst + " with " + kSecond, "hold X or A", "shows " + kSecond,
+                     "shows " + kFirst, "shows " + kSecond, "shows " + kFirst});
     std::size_t cuts = 0, of_second = 0, frames = 0;
     bool was_second = false;
-    for (std::size_t frame = run.pictureAt(7.0); frame < run.frames.size() && run.frames[frame].contains("picture"); ++frame) {
+    for (std::size_t frame = run.pictureAt(7.0);
+         frame < run.frames.size() && run.frames[frame].contains("picture"); ++frame) {
         CAPTURE(frame);
         const Image seen = run.eye(frame, kLeft);
         const double as_first = compare(seen, first.eye(frame, kLeft)).psnrDb();
@@ -34,7 +37,8 @@ TEST_CASE(
         // Nothing between the two, and the picture after a cut is exact: others are made from the one before.
         CHECK(std::max(as_first, as_second) > (is_cut ? 50.0 : 30.0));
         CHECK(std::min(as_first, as_second) < 25.0);
-        CHECK(compare(run.eye(frame, kRight), (is_second ? second : first).eye(frame, kRight)).psnrDb() > (is_cut ? 50.0 : 30.0));
+        CHECK(compare(run.eye(frame, kRight), (is_second ? second : first).eye(frame, kRight)).psnrDb() >
+              (is_cut ? 50.0 : 30.0));
         cuts += is_cut ? 1 : 0;
         of_second += is_second ? 1 : 0;
         ++frames;
@@ -44,9 +48,9 @@ TEST_CASE(
     CHECK(frames > 30);
 }
 
-TEST_CASE_FIXTURE(
-    AtWork,
-    "the panel compares with the scene chosen next, keeps the other one in sight, and ends it; one that is broken leaves one alone") {
+TEST_CASE_FIXTURE(AtWork,
+                  "the panel compares with the scene chosen next, keeps the other one in sight, and ends it; "
+                  "one that is broken leaves one alone") {
     const fs::path scenes = work.path / "scenes";
     fs::create_directory(scenes);
     std::ofstream(scenes / "broken.ply") << "ply\nnonsense\n";
@@ -58,24 +62,28 @@ TEST_CASE_FIXTURE(
     const auto click = [&](const std::string& widget) {
         acts.point(placeOfScene(widget, folder)).wait(0.25).press("right trigger", 0.3).wait(0.4);
     };
-    for (const char* widget : {"Compare", "broken.ply", "Compare", "wall.ply", "Other", "Other", "Compare"}) { click(widget); }
-    const ViewRun run =
-        runClean(work, "panel", acts.script(),
-                 "scenes/one.ply --load-first --mode shared --hide-hands" + withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
-                 kValidated + " SIMULATED_OPENXR_CLOCK=real");
+    for (const char* widget : {"Compare", "broken.ply", "Compare", "wall.ply", "Other", "Other", "Compare"}) {
+        click(widget);
+    }
+    const ViewRun run = runClean(work, "panel", acts.script(),
+                                 "scenes/one.ply --load-first --mode shared --hide-hands" +
+                                     withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
+                                 kValidated + " SIMULATED_OPENXR_CLOCK=real");
     INFO(run.outcome.output);
     const std::string wall = (scenes / "wall.ply").string();
-    checkOrder(run,
-               {"shows scenes/one.ply", "to compare with scenes/one.ply", "broken.ply:", "to compare with scenes/one.ply",
-                "compares scenes/one.ply with " + wall, "shows " + wall, "shows scenes/one.ply", wall + " is no longer compared with"});
+    checkOrder(run, {"shows scenes/one.ply", "to compare with scenes/one.ply",
+                     "broken.ply:", "to compare with scenes/one.ply", "compares scenes/one.ply with " + wall,
+                     "shows " + wall, "shows scenes/one.ply", wall + " is no longer compared with"});
 }
 
 TEST_CASE("where two scenes do not fit together, a line says so, and the first one stays") {
     const Workplace work;
     work.go("scene atelier --splats 20000 --out many.ply");
-    const ViewRun run = runClean(work, "small", "rate 45\nsize 64 64\nframes none\nat 0.4 exit\n",
-                                 "many.ply --compare builtin:atelier --load-first --mode mono --hide-hands --memory-limit 24");
-    CHECK(run.says("many.ply and builtin:atelier do not fit into the device's memory together: the first one stays"));
+    const ViewRun run = runClean(
+        work, "small", "rate 45\nsize 64 64\nframes none\nat 0.4 exit\n",
+        "many.ply --compare builtin:atelier --load-first --mode mono --hide-hands --memory-limit 24");
+    CHECK(run.says(
+        "many.ply and builtin:atelier do not fit into the device's memory together: the first one stays"));
     CHECK_FALSE(run.says("compares "));
     CHECK(run.layers(run.frames.size() / 2, "projection").size() == 1);
 }

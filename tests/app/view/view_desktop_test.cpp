@@ -5,14 +5,19 @@
 SUITE(view_desktop) {
 
 // The number in a line "frame 12: help".
-std::uint64_t pictureOf(const std::string& line) { return std::stoull(line.substr(line.rfind("frame ") + 6)); }
+std::uint64_t pictureOf(const std::string& line) {
+    return std::stoull(line.substr(line.rfind("frame ") + 6));
+}
 
 class Window {
 public:
     Window(const Workplace& work, const std::string& options, const std::string& environment = "")
-        : program_((picturesInto(work), work.path), "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
+        : program_((picturesInto(work), work.path),
+                   "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
-        hands("search --sync --onlyvisible --name '^builtin:slanted-wall - binosplat$' mousemove --window %1 20 20");
+        hands(
+            "search --sync --onlyvisible --name '^builtin:slanted-wall - binosplat$' mousemove --window %1 "
+            "20 20");
     }
     // Shows or hides the help: once it has changed, everything before has reached the window. Returns the
     // number of its latest picture.
@@ -39,7 +44,8 @@ public:
         const std::string line = program_.waitFor("the centre is ");
         REQUIRE(line != "");
         glm::dvec3 point(0.0);
-        REQUIRE(std::sscanf(line.substr(line.find("centre is")).c_str(), "centre is %lf, %lf, %lf", &point.x, &point.y, &point.z) == 3);
+        REQUIRE(std::sscanf(line.substr(line.find("centre is")).c_str(), "centre is %lf, %lf, %lf", &point.x,
+                            &point.y, &point.z) == 3);
         REQUIRE(program_.waitFor("arrived") != "");
         hands("key r");
         REQUIRE(program_.waitFor("arrived") != "");
@@ -47,7 +53,8 @@ public:
         return point;
     }
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
-        for (const std::string& does : {moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)}) {
+        for (const std::string& does : {moveTo(from), fmt::format("mousedown {}", button), moveTo(to),
+                                        fmt::format("mouseup {}", button)}) {
             hands(does);
         }
     }
@@ -57,7 +64,8 @@ public:
         sketch.status.window.emplace();
         sketch.settings.page = page;
         const glm::dvec2 size(glm::ivec2(0.7 * glm::dvec2(kPanelPx)));
-        hands(moveTo(glm::dvec2(1280.0 - size.x, 0.0) + shareOf(sketch.draw().places, widget) * size) + "click 1");
+        hands(moveTo(glm::dvec2(1280.0 - size.x, 0.0) + shareOf(sketch.draw().places, widget) * size) +
+              "click 1");
     }
     std::string waitFor(const std::string& words) {
         const std::string lines = program_.waitFor(words);
@@ -71,7 +79,8 @@ public:
         CHECK(program_.exitCode() == 0);
         INFO(program_.said());
         CHECK(program_.said().find(" pictures in the window, ") != std::string::npos);
-        CHECK(these(program_.said().find("VUID"), program_.said().find("SYNC")) == these(std::string::npos, std::string::npos));
+        CHECK(these(program_.said().find("VUID"), program_.said().find("SYNC")) ==
+              these(std::string::npos, std::string::npos));
     }
     [[nodiscard]] Program& program() { return program_; }
 
@@ -80,7 +89,9 @@ private:
     std::string picture_;
 };
 
-TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse and wheel keep hold of what is seen; it rests") {
+TEST_CASE(
+    "without a runtime the scene is in a window, as render draws it; mouse and wheel keep hold of what is "
+    "seen; it rests") {
     if (!haveScreen()) { return; }
     const Workplace work;
     Window window(work, "--hide-panel", "XR_RUNTIME_JSON=/nonexistent/runtime.json ");
@@ -109,7 +120,9 @@ TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse
     // Hides the panel, which the help had brought up.
     hands("key Tab");
     REQUIRE(window.program().waitFor("panel = false") != "");
-    REQUIRE(work.run("render builtin:slanted-wall --mode mono --order distance --size 1280x720 --fov-x 60 --out drawn").exit_code == 0);
+    REQUIRE(work.run("render builtin:slanted-wall --mode mono --order distance --size 1280x720 --fov-x 60 "
+                     "--out drawn")
+                .exit_code == 0);
     Image screen = desk().screen.picture();
     const Image drawn = readPicture(work.path / "drawn" / "mono.png");
     CHECK(compare(partOf(screen, {0, 0}, {1280, 720}), drawn).psnrDb() > 40.0);
@@ -118,7 +131,9 @@ TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse
     window.checkEnd();
 }
 
-TEST_CASE("in the window a picture is taken beside its frames: they wait for the one that shows all pixels, and make nothing") {
+TEST_CASE(
+    "in the window a picture is taken beside its frames: they wait for the one that shows all pixels, and "
+    "make nothing") {
     if (!haveScreen()) { return; }
     const Workplace work;
     Window window(work, "--desktop --hide-panel", withFaults("BINOSPLAT_FAULT_WAITS=waits.txt ", ""));
@@ -138,20 +153,27 @@ TEST_CASE("in the window a picture is taken beside its frames: they wait for the
     REQUIRE(lines.size() > before);
     for (std::size_t i = before; i < lines.size(); ++i) {
         std::istringstream words(lines[i].substr(lines[i].find(' ') + 1));
-        for (std::string kind, count; words >> kind >> count;) { CHECK_MESSAGE(kind.starts_with("fence-of-"), lines[i]); }
+        for (std::string kind, count; words >> kind >> count;) {
+            CHECK_MESSAGE(kind.starts_with("fence-of-"), lines[i]);
+        }
     }
     window.checkEnd();
 }
 
-TEST_CASE("a window whose surface is lost goes on, and in another size, too; for crossed eyes both pictures change places") {
+TEST_CASE(
+    "a window whose surface is lost goes on, and in another size, too; for crossed eyes both pictures change "
+    "places") {
     if (!haveScreen()) { return; }
     std::vector<Image> left, right;
     for (const char* stereo : {"side-by-side", "cross-eyed"}) {
         const Workplace work;
-        std::ofstream(work.path / "stereo.toml") << fmt::format("[view]\npanel = false\nwindow-stereo = \"{}\"\n", stereo);
-        Window window(work, "--desktop --config stereo.toml", withFaults("BINOSPLAT_FAULT=present:2:surface-lost-once", "") + " ");
+        std::ofstream(work.path / "stereo.toml")
+            << fmt::format("[view]\npanel = false\nwindow-stereo = \"{}\"\n", stereo);
+        Window window(work, "--desktop --config stereo.toml",
+                      withFaults("BINOSPLAT_FAULT=present:2:surface-lost-once", "") + " ");
         window.help();
-        hands("search --onlyvisible --name '^builtin:slanted-wall - binosplat$' windowsize --sync %1 900 600");
+        hands(
+            "search --onlyvisible --name '^builtin:slanted-wall - binosplat$' windowsize --sync %1 900 600");
         window.help();
         hands("key Tab");
         REQUIRE(window.program().waitFor("panel = false") != "");
@@ -166,14 +188,19 @@ TEST_CASE("a window whose surface is lost goes on, and in another size, too; for
     CHECK(compare(left[0], right[0]).psnrDb() < 30.0);
 }
 
-TEST_CASE("a runtime that hangs keeps no window from opening; what is dropped on one that nobody sees is drawn once somebody does") {
+TEST_CASE(
+    "a runtime that hangs keeps no window from opening; what is dropped on one that nobody sees is drawn "
+    "once somebody does") {
     if (!haveScreen()) { return; }
     const Workplace work;
     work.go("scene one-splat --out one.ply");
-    Window window(work, "--hide-panel",
-                  "XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                  "/openxr' BINOSPLAT_XR_FAULT=xrCreateInstance:hang XR_RUNTIME_JSON='" BINOSPLAT_BUILD "/bin/simulated_runtime.json' ");
-    CHECK(window.program().said().find("does not answer; the scene is shown in a window\n") != std::string::npos);
+    Window window(
+        work, "--hide-panel",
+        "XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+        "/openxr' BINOSPLAT_XR_FAULT=xrCreateInstance:hang XR_RUNTIME_JSON='" BINOSPLAT_BUILD
+        "/bin/simulated_runtime.json' ");
+    CHECK(window.program().said().find("does not answer; the scene is shown in a window\n") !=
+          std::string::npos);
     window.rest();
     const unsigned long number = numberOfWindow("^builtin:slanted-wall - binosplat$", "WINDOW");
     desk().connection.minimize(number, true);
@@ -188,7 +215,8 @@ TEST_CASE("a runtime that hangs keeps no window from opening; what is dropped on
 }
 
 TEST_CASE(
-    "two ends and a number give the scene its true size; a viewpoint gets a name and a tour; what is set on the panel is so the next "
+    "two ends and a number give the scene its true size; a viewpoint gets a name and a tour; what is set on "
+    "the panel is so the next "
     "time") {
     if (!haveScreen()) { return; }
     const Workplace work;
@@ -205,9 +233,11 @@ TEST_CASE(
         window.waitFor("as shown, it is ");
         hands("key 2 period 5 9 BackSpace Return");
         window.waitFor("saved as ");
-        const std::string text = textIn(kept / "scenes" / "slanted-wall.view.toml"), key = "metres-per-unit = ";
+        const std::string text = textIn(kept / "scenes" / "slanted-wall.view.toml"),
+                          key = "metres-per-unit = ";
         REQUIRE(text.find(key) != std::string::npos);
-        CHECK(std::stod(text.substr(text.find(key) + key.size())) == doctest::Approx(2.5 / glm::distance(from, to)).epsilon(0.01));
+        CHECK(std::stod(text.substr(text.find(key) + key.size())) ==
+              doctest::Approx(2.5 / glm::distance(from, to)).epsilon(0.01));
 
         window.click("Both eyes", PanelPage::kView);
         window.waitFor("picture-both-eyes = true");
@@ -219,7 +249,8 @@ TEST_CASE(
         for (const char* number : {"1", "2"}) {
             window.click("Keep this one", PanelPage::kScenes);
             window.waitFor("this viewpoint is kept");
-            CHECK(textIn(kept / "scenes" / "slanted-wall.viewpoints.json").find("your own " + std::string(number)) != std::string::npos);
+            CHECK(textIn(kept / "scenes" / "slanted-wall.viewpoints.json")
+                      .find("your own " + std::string(number)) != std::string::npos);
         }
         window.click("Name", PanelPage::kScenes);
         hands("key --repeat 12 BackSpace");
@@ -232,7 +263,8 @@ TEST_CASE(
         window.waitFor("the tour is over");
         window.checkEnd();
     }
-    CHECK(textIn(kept / "preferences.toml").find("\n[view]\npicture-both-eyes = true\n") != std::string::npos);
+    CHECK(textIn(kept / "preferences.toml").find("\n[view]\npicture-both-eyes = true\n") !=
+          std::string::npos);
     Window window(work, "--desktop --hide-panel");
     window.rest();
     CHECK(readPicture(window.picture()).size_px == glm::uvec2(2560, 720));
@@ -242,7 +274,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "two scenes are left and right of a curtain that can be dragged; a held key shows the other one whole, and in pictures; two that are "
+    "two scenes are left and right of a curtain that can be dragged; a held key shows the other one whole, "
+    "and in pictures; two that are "
     "dropped are compared") {
     if (!haveScreen()) { return; }
     const Workplace work;
@@ -292,7 +325,8 @@ TEST_CASE(
 
     const unsigned long number = numberOfWindow("^builtin:slanted-wall . fence.ply - binosplat$", "WINDOW");
     desk().connection.drop(number, {work.path / "one.ply", work.path / "fence.ply"});
-    window.waitFor("compares " + (work.path / "one.ply").string() + " with " + (work.path / "fence.ply").string());
+    window.waitFor("compares " + (work.path / "one.ply").string() + " with " +
+                   (work.path / "fence.ply").string());
     // It ends with the scene that it is a comparison of.
     desk().connection.drop(number, {work.path / "one.ply"});
     window.waitFor("shows " + (work.path / "one.ply").string());

@@ -21,22 +21,34 @@ std::string walkOf(int rounds, const std::string& folder) {
     const std::string page = pointingAt(panelBefore(), placeOf("Scenes")),
                       next = pointingAt(panelBefore(), placeOfScene("Next scene", folder));
     std::string script = fmt::format(
-        "rate {}\nsize 64 64\nframes none\nvisibility-mask on\nimages 3 shuffled\nirregular 20\nstate-changes at-begin\n", kRate);
+        "rate {}\nsize 64 64\nframes none\nvisibility-mask on\nimages 3 shuffled\nirregular "
+        "20\nstate-changes at-begin\n",
+        kRate);
     for (int round = 0; round < rounds; ++round) {
         const double t = kRound * round;
-        script += fmt::format("head {:.2f} position 0 1.6 0 turn 0 0\nhead {:.2f} position 0 1.6 0\n", t, t + 2.4);
-        script += fmt::format("head {:.2f} position 0.3 1.5 -0.5 turn 25 -10\nhead {:.2f} position 0 1.6 0 turn 0 0\n", t + 3.5, t + 4.6);
-        script += fmt::format("controller right {:.2f} {}\ncontroller right {:.2f} {}\n", t + 0.2, page, t + 0.8, page);
-        script += fmt::format("controller right {:.2f} {}\ncontroller right {:.2f} {}\n", t + 0.9, next, t + 1.5, next);
+        script +=
+            fmt::format("head {:.2f} position 0 1.6 0 turn 0 0\nhead {:.2f} position 0 1.6 0\n", t, t + 2.4);
+        script += fmt::format(
+            "head {:.2f} position 0.3 1.5 -0.5 turn 25 -10\nhead {:.2f} position 0 1.6 0 turn 0 0\n", t + 3.5,
+            t + 4.6);
+        script += fmt::format("controller right {:.2f} {}\ncontroller right {:.2f} {}\n", t + 0.2, page,
+                              t + 0.8, page);
+        script += fmt::format("controller right {:.2f} {}\ncontroller right {:.2f} {}\n", t + 0.9, next,
+                              t + 1.5, next);
         script += fmt::format("press right trigger {:.2f} {:.2f}\n", t + 0.4, t + 0.7);
         script += fmt::format("controller right {:.2f} position 0.5 1.3 -0.5 turn -60 10\n", t + 2.5);
         script += fmt::format("controller right {:.2f} position 0.3 1.1 -0.4 turn -80 -10\n", t + 4.5);
         script += fmt::format("press right trigger {:.2f} {:.2f}\n", t + 1.0, t + 1.3);
-        script += fmt::format("press right squeeze {:.2f} {:.2f}\npress left squeeze {:.2f} {:.2f}\n", t + 2.7, t + 4.4, t + 3.2, t + 4.0);
-        script += fmt::format("axis left thumbstick {:.2f} 0 0\naxis left thumbstick {:.2f} 0.3 1\n", t + 4.7, t + 4.8);
-        script += fmt::format("axis left thumbstick {:.2f} 0.3 1\naxis left thumbstick {:.2f} 0 0\n", t + 5.4, t + 5.5);
-        script += fmt::format("at {:.2f} recentre\nat {:.2f} worn off\nat {:.2f} worn on\n", t + 5.0, t + 5.8, t + 6.3);
-        script += fmt::format("at {:.2f} lose-session\nat {:.2f} head off\nat {:.2f} head on\n", t + 7.5, t + 8.5, t + 8.8);
+        script += fmt::format("press right squeeze {:.2f} {:.2f}\npress left squeeze {:.2f} {:.2f}\n",
+                              t + 2.7, t + 4.4, t + 3.2, t + 4.0);
+        script += fmt::format("axis left thumbstick {:.2f} 0 0\naxis left thumbstick {:.2f} 0.3 1\n", t + 4.7,
+                              t + 4.8);
+        script += fmt::format("axis left thumbstick {:.2f} 0.3 1\naxis left thumbstick {:.2f} 0 0\n", t + 5.4,
+                              t + 5.5);
+        script += fmt::format("at {:.2f} recentre\nat {:.2f} worn off\nat {:.2f} worn on\n", t + 5.0, t + 5.8,
+                              t + 6.3);
+        script += fmt::format("at {:.2f} lose-session\nat {:.2f} head off\nat {:.2f} head on\n", t + 7.5,
+                              t + 8.5, t + 8.8);
         script += fmt::format("at {:.2f} rate {}\nat {:.2f} rate {}\n", t + 9.0, 2 * kRate, t + 9.5, kRate);
     }
     script += fmt::format("at {:.2f} exit\n", kRound * rounds);
@@ -45,22 +57,25 @@ std::string walkOf(int rounds, const std::string& folder) {
 
 // What was alive during ten submissions.
 struct Alive {
-    std::uint64_t submissions, fewest_objects, most_objects, least_device_bytes, most_device_bytes, heap_bytes, resident_bytes,
-        kernels_made;
+    std::uint64_t submissions, fewest_objects, most_objects, least_device_bytes, most_device_bytes,
+        heap_bytes, resident_bytes, kernels_made;
 };
 
 std::vector<Alive> readAlive(const std::filesystem::path& file) {
     std::vector<Alive> lines;
     std::ifstream stream(file);
     char dash = '-';
-    for (Alive line{}; stream >> line.submissions >> line.fewest_objects >> dash >> line.most_objects >> line.least_device_bytes >> dash >>
-                       line.most_device_bytes >> line.heap_bytes >> line.resident_bytes >> line.kernels_made;) {
+    for (Alive line{}; stream >> line.submissions >> line.fewest_objects >> dash >> line.most_objects >>
+                       line.least_device_bytes >> dash >> line.most_device_bytes >> line.heap_bytes >>
+                       line.resident_bytes >> line.kernels_made;) {
         lines.push_back(line);
     }
     return lines;
 }
 
-std::uint64_t most(std::span<const Alive> lines, std::uint64_t Alive::*what) { return std::ranges::max(lines, {}, what).*what; }
+std::uint64_t most(std::span<const Alive> lines, std::uint64_t Alive::*what) {
+    return std::ranges::max(lines, {}, what).*what;
+}
 
 std::uint64_t medianHeapBytes(std::span<const Alive> lines) {
     std::vector<std::uint64_t> sorted;
@@ -84,23 +99,29 @@ struct Walk : ViewRun {  // its frames are too many to be read
         REQUIRE(work.run("scene one-splat --out scenes/a.ply").exit_code == 0);
         REQUIRE(work.run("scene slanted-wall --out scenes/b.ply").exit_code == 0);
         const char* const wanted = std::getenv("BINOSPLAT_WALK_SECONDS");
-        const int rounds = std::max(static_cast<int>((wanted != nullptr ? std::atof(wanted) : 0.0) / kRound), 2 * kFewestWarm);
+        const int rounds = std::max(static_cast<int>((wanted != nullptr ? std::atof(wanted) : 0.0) / kRound),
+                                    2 * kFewestWarm);
         std::ofstream(work.path / "walk.script") << walkOf(rounds, (work.path / "scenes").string());
         const char* const kept = std::getenv("BINOSPLAT_WALK_KEEP");
-        const std::filesystem::path file = kept != nullptr ? std::filesystem::path(kept) : work.path / "alive.txt";
+        const std::filesystem::path file =
+            kept != nullptr ? std::filesystem::path(kept) : work.path / "alive.txt";
         // In a process that starts with it: the C library reads its settings only once.
-        outcome = work.runCommand(fmt::format(
-            "{} {} '" BINOSPLAT_PROGRAM "' view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk", kSteadyHeap,
-            withFaults("BINOSPLAT_FAULT_LIVE='" + file.string() + "'", environment), 2 * rounds * static_cast<int>(kRound) * kRate));
+        outcome = work.runCommand(
+            fmt::format("{} {} '" BINOSPLAT_PROGRAM
+                        "' view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk",
+                        kSteadyHeap, withFaults("BINOSPLAT_FAULT_LIVE='" + file.string() + "'", environment),
+                        2 * rounds * static_cast<int>(kRound) * kRate));
         lines_alive = readAlive(file);
         const auto least = static_cast<std::size_t>(rounds);
         REQUIRE(lines_alive.size() >= least * 5);
-        const std::size_t warm_lines = lines_alive.size() * static_cast<std::size_t>(std::min(rounds / 2, kMostWarm)) / least;
+        const std::size_t warm_lines =
+            lines_alive.size() * static_cast<std::size_t>(std::min(rounds / 2, kMostWarm)) / least;
         warm = std::span(lines_alive).first(warm_lines);
         later = std::span(lines_alive).subspan(warm_lines);
         MESSAGE(mebibytes(medianHeapBytes(warm))
-                << " MiB of heap at first, later " << mebibytes(medianHeapBytes(later)) << ", at most resident "
-                << mebibytes(most(warm, &Alive::resident_bytes)) << " and " << mebibytes(most(later, &Alive::resident_bytes)));
+                << " MiB of heap at first, later " << mebibytes(medianHeapBytes(later))
+                << ", at most resident " << mebibytes(most(warm, &Alive::resident_bytes)) << " and "
+                << mebibytes(most(later, &Alive::resident_bytes)));
         CHECK(lines("another one begins").size() + 1 >= least);
         CHECK(lines("shows ").size() >= least);
         CHECK(lines("the room now begins where the wearer stands").size() > least);
@@ -110,16 +131,20 @@ struct Walk : ViewRun {  // its frames are too many to be read
     std::span<const Alive> warm, later;
 };
 
-TEST_CASE("however long somebody walks about, nobody complains, and of the device no more is in use than at first" * nightly()) {
+TEST_CASE(
+    "however long somebody walks about, nobody complains, and of the device no more is in use than at first" *
+    nightly()) {
     const Walk walk(kValidated);
     checkClean(walk);
     // Not one object more: whatever a round leaks would add up in later ones.
     CHECK(most(walk.later, &Alive::most_objects) <= most(walk.warm, &Alive::most_objects));
     // The length of a scene's lists depends on where the wearer stands when it arrives.
-    CHECK(most(walk.later, &Alive::most_device_bytes) <= most(walk.warm, &Alive::most_device_bytes) * 51 / 50);
+    CHECK(most(walk.later, &Alive::most_device_bytes) <=
+          most(walk.warm, &Alive::most_device_bytes) * 51 / 50);
 }
 
-TEST_CASE("nor does the host's memory grow, and what was made for one scene is not made again for another" * nightly()) {
+TEST_CASE("nor does the host's memory grow, and what was made for one scene is not made again for another" *
+          nightly()) {
     // The validation layer of Vulkan 1.3.239 itself keeps 60 KiB more with each scene.
     const Walk walk("XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY=");
     INFO("stderr: " << walk.outcome.errors);

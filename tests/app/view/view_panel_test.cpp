@@ -7,13 +7,16 @@
 
 SUITE(view_panel) {
 
-const std::string kBlind = "rate 50\nsize 64 64\nframes none\n", kSmall = "rate 50\nsize 96 96\nframes every 2\n";
+const std::string kBlind = "rate 50\nsize 64 64\nframes none\n",
+                  kSmall = "rate 50\nsize 96 96\nframes every 2\n";
 const std::string kScene = kWall + " --mode mono";
 const std::string kSources = BINOSPLAT_SOURCE_DIR "/shaders";
 
 const std::string kAsHeadset = " --size 96x96 --fov-x 90 --ipd 0.063";
 
-TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and the place is saved, and comes back") {
+TEST_CASE(
+    "what is clicked on the panel is so, beside it nothing is clicked, and the place is saved, and comes "
+    "back") {
     const Workplace work;
     Acts acts("rate 50\nsize 160 160\nframes none\n");
     // One step ahead.
@@ -29,12 +32,17 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     const double held = acts.point(onMethod("resolution")).hold("right trigger", 0.1).wait(0.05).look(0.1);
     const double let_go = acts.look(0.05);
     // Shaders can be reloaded only if their folder was given.
-    acts.click(onMethod("Shaders", true)).click(onMethod("reproject")).click(onMethod("View")).click(placeOf("120 Hz", true));
+    acts.click(onMethod("Shaders", true))
+        .click(onMethod("reproject"))
+        .click(onMethod("View"))
+        .click(placeOf("120 Hz", true));
     const double other_rate = acts.wait(0.05).look(0.05);
     acts.click(placeOf("Quit")).wait(0.5);
     // What the command line says about the simulated headset overrides the environment.
-    const ViewRun run = runClean(work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
-                                 kValidated + " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
+    const ViewRun run = runClean(
+        work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
+        kValidated +
+            " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
     CHECK_FALSE(fs::exists(work.path / "elsewhere"));
     CHECK(run.endSeconds() < acts.now_s - 0.3);
     CHECK_FALSE(run.says("shaders"));
@@ -42,8 +50,8 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     CHECK(std::abs(glm::dot(panelOf(run, 8).orientation, acts.panel.orientation)) > 1.0 - 1e-9);
     const auto size = run.panels(8).at(0).at("size").get<std::array<double, 2>>();
     CHECK(glm::length(glm::dvec2(size[0], size[1]) - kPanelMetres) < 1e-6);
-    checkOrder(run, {"dominant = \"right\"", "saved as ", "dominant = \"left\"", "loaded ",
-                     "margin = ", "budget = ", "resolution-scale = ", "mode = \"reproject\"", "refresh-rate = 120"});
+    checkOrder(run, {"dominant = \"right\"", "saved as ", "dominant = \"left\"", "loaded ", "margin = ",
+                     "budget = ", "resolution-scale = ", "mode = \"reproject\"", "refresh-rate = 120"});
     CHECK(std::stod(run.lines(" = ").at(0).substr(6)) > 50.0 * beside);
     const auto valueOf = [&](const std::string& key) {
         const std::string line = run.lines(key + " = ").at(0);
@@ -54,22 +62,28 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     CHECK(share == between(0.4, 0.6));
     CHECK(valueOf("margin") == doctest::Approx(128.0 * share).epsilon(0.02));
     CHECK(scale == doctest::Approx(0.1 + 1.9 * share).epsilon(0.02));
-    CHECK(these(run.width(run.frameAt(held)), run.width(run.frameAt(let_go) + 2), run.periodNs(run.frameAt(let_go))) ==
+    CHECK(these(run.width(run.frameAt(held)), run.width(run.frameAt(let_go) + 2),
+                run.periodNs(run.frameAt(let_go))) ==
           these(160, static_cast<int>(std::round(160.0 * scale)), 20'000'000));
     CHECK(run.periodNs(run.frameAt(other_rate)) == 8'333'333);
 
     // Both the viewer and `render` accept the file.
     const std::string said = run.lines("saved as ").at(0);
     const fs::path file = said.substr(said.find("saved as ") + 9);
-    CHECK(fs::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
+    CHECK(fs::weakly_canonical(file) ==
+          work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
     CHECK(run.says("loaded " + file.string()));
-    REQUIRE(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
+    REQUIRE(
+        work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'")
+            .exit_code == 0);
     // The wearer stands there again, unless an option gives another place.
     const auto look = [&](const std::string& name, const std::string& arguments) {
-        return runClean(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n", kWall + " --hide-panel " + arguments);
+        return runClean(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n",
+                        kWall + " --hide-panel " + arguments);
     };
     const std::string as_then = "--mode mono --dominant right";
-    const ViewRun there = look("there", as_then), named = look("named", as_then + " --config '" + file.string() + "'"),
+    const ViewRun there = look("there", as_then),
+                  named = look("named", as_then + " --config '" + file.string() + "'"),
                   before = look("before", as_then + " --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
     CHECK(there.says("the wearer stands where this scene was saved"));
     CHECK_FALSE(before.says("where this scene was saved"));
@@ -81,13 +95,14 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     Acts reload(kBlind);
     reload.click(onMethod("Shaders", true)).wait(0.1);
     const std::string method_page = withConfig(work, kMethodPage);
-    const ViewRun other =
-        runClean(work, "other", reload.script(), kOneSplat + " --mode mono" + method_page, kValidated + " BINOSPLAT_SHADERS=nowhere");
+    const ViewRun other = runClean(work, "other", reload.script(), kOneSplat + " --mode mono" + method_page,
+                                   kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK_FALSE(other.says("where this scene was saved"));
     CHECK(other.says("shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
     std::ofstream(file) << "[view]\nnonsense = 1\n";
     REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull_pages.comp").exit_code == 0);
-    const ViewRun broken = runClean(work, "broken", reload.script(), kScene + method_page + " --shaders pipe");
+    const ViewRun broken =
+        runClean(work, "broken", reload.script(), kScene + method_page + " --shaders pipe");
     CHECK(broken.says("slanted-wall.view.toml:2"));
     CHECK(broken.says("shaders stay as they were: pipe/sort/cull_pages.comp is not a file"));
 }
@@ -96,12 +111,14 @@ TEST_CASE_FIXTURE(AtWork, "a rate that the headset lacks, or that it refuses, is
     Acts acts("rate 90 fixed\nsize 64 64\nframes none\n");
     acts.click(placeOf("120 Hz", true)).wait(0.1);
     // Rates that the script changes to, even long after the end, are on the headset's list, too.
-    const ViewRun run = runView(work, "fixed", acts.script() + "at 20 rate 72\nat 21 rate 80\nat 22 rate 120\n",
-                                kScene + withConfig(work, "[view]\nrefresh-rate = 75\n"));
+    const ViewRun run =
+        runView(work, "fixed", acts.script() + "at 20 rate 72\nat 21 rate 80\nat 22 rate 120\n",
+                kScene + withConfig(work, "[view]\nrefresh-rate = 75\n"));
     CHECK(run.outcome.exit_code == 0);
     CHECK_FALSE(run.says("VUID"));
     CHECK(run.says("refresh-rate is 75, this headset has 72, 80, 90, 120"));
-    CHECK(run.says("refresh-rate is 120, this headset refuses it (XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB)"));
+    CHECK(run.says(
+        "refresh-rate is 120, this headset refuses it (XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB)"));
     CHECK(run.periodNs(run.frames.size() - 1) == 11'111'111);
 }
 
@@ -109,30 +126,39 @@ TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a
     // First unchanged; then one line is broken; then it draws nothing.
     fs::copy(kSources, work.path / "edited", fs::copy_options::recursive);
     const fs::path present = fs::path("edited") / "present" / "present.comp";
-    const std::string text = textIn(work.path / present), line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
+    const std::string text = textIn(work.path / present),
+                      line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
     const std::size_t at = text.find(line);
     REQUIRE(at != std::string::npos);
     fs::create_directory(work.path / "edits");
-    for (const auto& [edit, replacement] :
-         {std::pair("1", "    const uvec3 bytes = nonsense;"), std::pair("2", "    const uvec3 bytes = uvec3(0);")}) {
-        std::ofstream(work.path / "edits" / edit) << text.substr(0, at) + replacement + text.substr(at + line.size());
+    for (const auto& [edit, replacement] : {std::pair("1", "    const uvec3 bytes = nonsense;"),
+                                            std::pair("2", "    const uvec3 bytes = uvec3(0);")}) {
+        std::ofstream(work.path / "edits" / edit)
+            << text.substr(0, at) + replacement + text.substr(at + line.size());
     }
     writeCompilerOfChangedShaders(work.path / "tools",
-                                  "if [ $name = present ]; then for edit in edits/*; do [ -e $edit ] && mv $edit $last; break; done; fi\n");
+                                  "if [ $name = present ]; then for edit in edits/*; do [ -e $edit ] && mv "
+                                  "$edit $last; break; done; fi\n");
     Acts acts(kSmall);
     std::vector<double> looks{acts.look()};
     for (int i = 0; i < 3; ++i) {
         acts.click(onMethod("Shaders", true));
         looks.push_back(acts.look());
     }
-    const ViewRun run = runClean(work, "reload", acts.script(), kScene + " --shaders edited" + withConfig(work, kMethodPage),
-                                 kValidated + " PATH=\"$PWD/tools:$PATH\"");
+    const ViewRun run =
+        runClean(work, "reload", acts.script(), kScene + " --shaders edited" + withConfig(work, kMethodPage),
+                 kValidated + " PATH=\"$PWD/tools:$PATH\"");
     std::size_t count = 0;
-    for (const auto& file : fs::recursive_directory_iterator(kSources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
-    checkOrder(run, {fmt::format("{} shaders reloaded in ", count), "shaders stay as they were: " + present.string() + ":", "nonsense",
-                     " shaders reloaded in "});
+    for (const auto& file : fs::recursive_directory_iterator(kSources)) {
+        count += file.path().extension() == ".comp" ? 1 : 0;
+    }
+    checkOrder(run,
+               {fmt::format("{} shaders reloaded in ", count),
+                "shaders stay as they were: " + present.string() + ":", "nonsense", " shaders reloaded in "});
     // Away from the panel and the ray: the upper third of the right half.
-    const auto seenAt = [&](double seconds) { return partOf(run.eye(run.pictureAt(seconds), kRight), {49, 0}, {96, 32}); };
+    const auto seenAt = [&](double seconds) {
+        return partOf(run.eye(run.pictureAt(seconds), kRight), {49, 0}, {96, 32});
+    };
     for (const std::size_t i : {1, 2, 3}) {
         const std::size_t other = countPixels(seenAt(looks[0]), seenAt(looks[i] + 0.04), std::not_equal_to{});
         CAPTURE(i);
@@ -144,37 +170,47 @@ TEST_CASE_FIXTURE(AtWork, "every shader is compiled from its source as the build
     Acts acts(kBlind);
     acts.click(onMethod("Shaders", true)).wait(0.1);
     const ViewRun run =
-        runClean(work, "all", acts.script(), kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
+        runClean(work, "all", acts.script(),
+                 kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
     CHECK(run.says(" shaders reloaded in "));
 }
 
-TEST_CASE_FIXTURE(AtWork, "a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
+TEST_CASE_FIXTURE(AtWork,
+                  "a resolution that the device has no memory for is refused on the panel, and what was "
+                  "shown before stays") {
     const std::string config = withConfig(work, kMethodPage + "resolution-scale = 0.25\n");
-    const auto choose = [&](const std::string& name, const std::string& headset, const std::string& arguments) {
+    const auto choose = [&](const std::string& name, const std::string& headset,
+                            const std::string& arguments) {
         Acts acts("rate 50\n" + headset);
         acts.wait(0.1).press("right b").click(onMethod("resolution")).press("right b").wait(0.2);
         return runClean(work, name, acts.script(), arguments + config);
     };
-    const ViewRun run = choose("full", "size 1024 1024\nframes from 12 to 36 every 24\n", kWall + " --hide-panel --memory-limit 16");
+    const ViewRun run = choose("full", "size 1024 1024\nframes from 12 to 36 every 24\n",
+                               kWall + " --hide-panel --memory-limit 16");
     CHECK(run.says("does not fit: "));
     CHECK(run.says("the limit is 16.0 MiB (memory-limit)"));
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
     // At the slider's middle (some 896 pixels) the eyes' pictures fit, but the pictures handed to the headset
     // do not.
-    CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --axes view --memory-limit 21")
+    CHECK(choose("brought", "size 853 853\nframes none\n",
+                 kOneSplat + " --hide-panel --mode shared --axes view --memory-limit 21")
               .says("presented pixels needs "));
 }
 
-TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a recorded walk with clicks as it is rendered") {
+TEST_CASE(
+    "tint and centre ROIs are seen in the eye made from the other, and a recorded walk with clicks as it is "
+    "rendered") {
     const Workplace work;
     std::ofstream motion(work.path / "walk.csv");
     motion << "time_s,x,y,z,qx,qy,qz,qw\n";
     for (int i = 0; i <= 300; ++i) {
         // The head is still at first.
-        const double time_s = i / 90.0, t = std::max(0.0, time_s - 1.3), turn = 0.2 * std::sin(2.0 * t), nod = 0.1 * std::sin(3.0 * t);
-        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s, 0.15 * std::sin(t),
-                              1.6 + 0.02 * std::sin(9.0 * t), -0.1 * t, nod, turn, std::sqrt(1.0 - nod * nod - turn * turn));
+        const double time_s = i / 90.0, t = std::max(0.0, time_s - 1.3), turn = 0.2 * std::sin(2.0 * t),
+                     nod = 0.1 * std::sin(3.0 * t);
+        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s,
+                              0.15 * std::sin(t), 1.6 + 0.02 * std::sin(9.0 * t), -0.1 * t, nod, turn,
+                              std::sqrt(1.0 - nod * nod - turn * turn));
     }
     motion.close();
     Acts acts("rate 50\nsize 96 96\nframes every 5\nhead-motion walk.csv\n");
@@ -183,20 +219,27 @@ TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a r
     const double tinted = acts.look();
     acts.click(onMethod("Centre ROI (paper)"));
     const double centred = acts.look();
-    acts.click(onMethod("Show how tiles were made")).wait(1.3 - acts.now_s).click(onMethod("predicted")).wait(0.25);
+    acts.click(onMethod("Show how tiles were made"))
+        .wait(1.3 - acts.now_s)
+        .click(onMethod("predicted"))
+        .wait(0.25);
     const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
     // So near to the bars that holes open inside the picture.
-    const ViewRun run = runClean(
-        work, "walk", acts.script(),
-        "builtin:fence --load-first --hide-panel --hide-hands --axes view --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
-            withConfig(work, kMethodPage));
-    checkOrder(run, {"tint = true", "center-roi = true", "tint = false", "mode = \"predicted\"", "dominant = \"right\"",
-                     "the runtime asked for the end"});
+    const ViewRun run = runClean(work, "walk", acts.script(),
+                                 "builtin:fence --load-first --hide-panel --hide-hands --axes view --mode "
+                                 "paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
+                                     withConfig(work, kMethodPage));
+    checkOrder(run, {"tint = true", "center-roi = true", "tint = false", "mode = \"predicted\"",
+                     "dominant = \"right\"", "the runtime asked for the end"});
     // The share of pixels that are greener than in the other picture.
     const auto shareAt = [&](int side) {
-        const Image before = run.eye(run.pictureAt(tinted), side), after = run.eye(run.pictureAt(centred), side);
-        const auto isTinted = [](const Colour& was, const Colour& is) { return is[1] - was[1] > 0.06f && was[0] - is[0] > 0.03f; };
-        return static_cast<double>(countPixels(before, after, isTinted)) / static_cast<double>(before.pixelCount());
+        const Image before = run.eye(run.pictureAt(tinted), side),
+                    after = run.eye(run.pictureAt(centred), side);
+        const auto isTinted = [](const Colour& was, const Colour& is) {
+            return is[1] - was[1] > 0.06f && was[0] - is[0] > 0.03f;
+        };
+        return static_cast<double>(countPixels(before, after, isTinted)) /
+               static_cast<double>(before.pixelCount());
     };
     CHECK(shareAt(kRight) > 0.02);
     CHECK(shareAt(kLeft) < 0.005);
@@ -215,7 +258,9 @@ TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a r
     CHECK(run.loggedEye(run.frameAt(walked), 0).position.z < -0.05);
 }
 
-TEST_CASE_FIXTURE(AtWork, "a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
     std::string begin = "rate 50\nsize 96 96\nframes every 4\nstage off\nprofile khr/simple_controller\n";
     for (const simulated::Extension& extension : simulated::kExtensions) {
         const std::string name = extension.name;
@@ -233,8 +278,9 @@ TEST_CASE_FIXTURE(AtWork, "a runtime with no more than OpenXR 1.0 and Vulkan sho
     acts.click(onMethod("View"), "right select").click(placeOf("Teleport"), "right select");
     acts.move("controller right", lookingAt({0.2, 1.2, -0.35}, {0.2, 1.2, -1.0})).wait(0.05);
     const double aiming = acts.hold("right select", 0.2).wait(0.05).look();
-    const ViewRun run = runClean(work, "core", acts.script(),
-                                 "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withConfig(work, kMethodPage));
+    const ViewRun run = runClean(
+        work, "core", acts.script(),
+        "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withConfig(work, kMethodPage));
     checkOrder(run, said);
     const std::size_t frame = run.pictureAt(shared);
     CHECK_FALSE(run.view(frame).contains("depth"));
@@ -253,13 +299,18 @@ TEST_CASE("the first start shows three gestures one after the other, and no othe
     const auto shownIn = [&](const ViewRun& run) {
         std::size_t frames = 0;
         for (std::size_t i = 0; i < run.frames.size(); ++i) {
-            frames += run.quadsWhere(i, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y; })
+            frames += run.quadsWhere(i,
+                                     [](const nlohmann::json& quad) {
+                                         return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y;
+                                     })
                           .size();
         }
         return frames;
     };
     const auto run = [&](const std::string& name, const std::string& when) {
-        return runClean(work, name, script, kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
+        return runClean(
+            work, name, script,
+            kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
     };
     // Three times seven seconds, minus the first frames, which wait for a file to be read.
     CHECK(shownIn(run("first", "once")) == between(std::size_t{380}, std::size_t{430}));

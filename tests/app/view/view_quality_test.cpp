@@ -7,7 +7,8 @@ SUITE(view_quality) {
 const std::string kNothingElse = " --hide-panel --hide-hands --load-first ";
 
 // Ticks from one timestamp to the next: far more than a period on any device, and far less.
-const std::string kSlow = withFaults("BINOSPLAT_FAULT_TICKS=1000000000"), kQuick = withFaults("BINOSPLAT_FAULT_TICKS=1");
+const std::string kSlow = withFaults("BINOSPLAT_FAULT_TICKS=1000000000"),
+                  kQuick = withFaults("BINOSPLAT_FAULT_TICKS=1");
 
 // The display is slow, so that the program's own work fits into a period on any machine. A layer reports that
 // frames take next to no time.
@@ -16,10 +17,11 @@ constexpr int kWhole = 100;  // pixels
 struct Governed : ViewRun {
     Governed(const std::string& quality, const std::string& load, int most_frames) {
         const Workplace work;
-        static_cast<ViewRun&>(*this) = runView(work, "load", fmt::format("rate 10\nsize {0} {0}\nframes none\n{1}", kWhole, load),
-                                               fmt::format("builtin:one-splat{}--axes view --frames {}{}", kNothingElse, most_frames,
-                                                           withConfig(work, fmt::format("[view]\nquality = \"{}\"\n", quality))),
-                                               kQuick);
+        static_cast<ViewRun&>(*this) =
+            runView(work, "load", fmt::format("rate 10\nsize {0} {0}\nframes none\n{1}", kWhole, load),
+                    fmt::format("builtin:one-splat{}--axes view --frames {}{}", kNothingElse, most_frames,
+                                withConfig(work, fmt::format("[view]\nquality = \"{}\"\n", quality))),
+                    kQuick);
         for (std::size_t i = 0; i < frames.size(); ++i) {
             const bool is_shown = !layers(i, "projection").empty();
             widths.push_back(is_shown ? width(i) : widths.empty() ? kWhole : widths.back());
@@ -60,7 +62,9 @@ struct Governed : ViewRun {
     std::vector<int> widths;
 };
 
-TEST_CASE("where nothing fits the least settings of a quality are reached within 60 frames, which is said; off it is what was set") {
+TEST_CASE(
+    "where nothing fits the least settings of a quality are reached within 60 frames, which is said; off it "
+    "is what was set") {
     const Workplace work;
     Acts acts("rate 90\nsize 200 200\nframes none\nvisibility-mask on\n");
     std::vector<double> looks;
@@ -68,9 +72,10 @@ TEST_CASE("where nothing fits the least settings of a quality are reached within
         if (*button != '\0') { acts.click(placeOf(button)); }
         looks.push_back(acts.wait(57.0 / 90.0).look(0.02));
     }
-    const ViewRun run = runClean(
-        work, "slow", acts.script(),
-        "builtin:one-splat --load-first --hide-hands --mode temporal" + withConfig(work, "[view]\nresolution-scale = 0.8\n"), kSlow);
+    const ViewRun run = runClean(work, "slow", acts.script(),
+                                 "builtin:one-splat --load-first --hide-hands --mode temporal" +
+                                     withConfig(work, "[view]\nresolution-scale = 0.8\n"),
+                                 kSlow);
     std::vector<int> widths;
     for (const double seconds : looks) { widths.push_back(run.width(run.frameAt(seconds))); }
     // 80 and 40 % of the wearer's setting, which is the maximum.
@@ -81,42 +86,54 @@ TEST_CASE("where nothing fits the least settings of a quality are reached within
     CHECK(run.periodNs(8) == 11'111'111);
 }
 
-TEST_CASE_FIXTURE(AtWork, "where everything fits nothing is given up, and the headset is asked for the rate that the settings name") {
-    const ViewRun run = runClean(
-        work, "quick", "rate 90\nsize 200 200\nframes none\n",
-        "builtin:one-splat --mode shared --frames 40" + kNothingElse + withConfig(work, "[view]\nquality = \"fast\"\nrefresh-rate = 120\n"),
-        kQuick);
+TEST_CASE_FIXTURE(AtWork,
+                  "where everything fits nothing is given up, and the headset is asked for the rate that the "
+                  "settings name") {
+    const ViewRun run = runClean(work, "quick", "rate 90\nsize 200 200\nframes none\n",
+                                 "builtin:one-splat --mode shared --frames 40" + kNothingElse +
+                                     withConfig(work, "[view]\nquality = \"fast\"\nrefresh-rate = 120\n"),
+                                 kQuick);
     CHECK(these(run.width(38), run.periodNs(0), run.periodNs(15)) == these(200, 11'111'111, 8'333'333));
 }
 
-TEST_CASE("no frame makes a kernel, also where the eyes come to look another way: all are made before the first one" * nightly()) {
+TEST_CASE(
+    "no frame makes a kernel, also where the eyes come to look another way: all are made before the first "
+    "one" *
+    nightly()) {
     const Workplace work;
-    for (const auto& [mode, lines] : {std::pair("predicted", ""), std::pair("predicted", "visibility-mask on\n"),
-                                      std::pair("temporal", "eye left cant 5\n"), std::pair("temporal", "visibility-mask on\n")}) {
+    for (const auto& [mode, lines] :
+         {std::pair("predicted", ""), std::pair("predicted", "visibility-mask on\n"),
+          std::pair("temporal", "eye left cant 5\n"), std::pair("temporal", "visibility-mask on\n")}) {
         INFO("mode ", mode, ", lines ", lines);
         // From side-by-side eyes to eyes with angles of their own.
-        const ViewRun run =
-            runClean(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
-                     fmt::format("builtin:one-splat{}--mode {} --move-cost 0 --frames 60", kNothingElse, mode),
-                     withFaults("BINOSPLAT_FAULT_LIVE=alive.txt"));
+        const ViewRun run = runClean(
+            work, "ready",
+            fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
+            fmt::format("builtin:one-splat{}--mode {} --move-cost 0 --frames 60", kNothingElse, mode),
+            withFaults("BINOSPLAT_FAULT_LIVE=alive.txt"));
         std::vector<std::string> made;
         std::ifstream counts(work.path / "alive.txt");
-        for (std::string line; std::getline(counts, line);) { made.push_back(line.substr(line.rfind(' ') + 1)); }
+        for (std::string line; std::getline(counts, line);) {
+            made.push_back(line.substr(line.rfind(' ') + 1));
+        }
         REQUIRE(made.size() > 4);
         CHECK(made.front() == made.back());
     }
 }
 
-TEST_CASE("a load that comes and goes: a lower bound and resolution at once, and both back once it has gone, with the same method") {
+TEST_CASE(
+    "a load that comes and goes: a lower bound and resolution at once, and both back once it has gone, with "
+    "the same method") {
     const Workplace work;
     // The head moves in front of a display of 30 Hz. First everything fits into 33 ms, then frames take 60
     // (tests/faults/load.h), then everything fits again. Staying axes would add a border larger than a
     // picture this small.
     constexpr int kComes = 40, kGoes = 100, kSecond = 30;
-    const ViewRun run =
-        runClean(work, "load", "rate 30\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 20 position 2 1.6 0\n",
-                 "builtin:slanted-wall --axes view --frames 300" + kNothingElse + withConfig(work, "[view]\nquality = \"balanced\"\n"),
-                 withFaults(fmt::format("BINOSPLAT_FAULT_LOAD=0:8,{}:60,{}:8", kComes, kGoes)));
+    const ViewRun run = runClean(
+        work, "load", "rate 30\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 20 position 2 1.6 0\n",
+        "builtin:slanted-wall --axes view --frames 300" + kNothingElse +
+            withConfig(work, "[view]\nquality = \"balanced\"\n"),
+        withFaults(fmt::format("BINOSPLAT_FAULT_LOAD=0:8,{}:60,{}:8", kComes, kGoes)));
     // "frame 41: temporal at 60 %, errors within 20 dB; why"
     const std::vector<std::string> changes = run.lines(" dB; ");
     INFO(run.outcome.output);
@@ -130,12 +147,15 @@ TEST_CASE("a load that comes and goes: a lower bound and resolution at once, and
         CHECK(changes[i].find(": temporal at ") != std::string::npos);
         if (frameOf(changes[i]) > kGoes) { CHECK(frameOf(changes[i]) - frameOf(changes[i - 1]) >= kSecond); }
     }
-    CHECK(changes.back().find("temporal at 100 %, errors within 30 dB; better for the same time") != std::string::npos);
+    CHECK(changes.back().find("temporal at 100 %, errors within 30 dB; better for the same time") !=
+          std::string::npos);
     CHECK(frameOf(changes.back()) <= kGoes + kSecond);
     CHECK(run.width(run.frames.size() - 4) == 64);
 }
 
-TEST_CASE("displays that are missed though frames seem to fit lower the resolution until they are met; it comes back little by little") {
+TEST_CASE(
+    "displays that are missed though frames seem to fit lower the resolution until they are met; it comes "
+    "back little by little") {
     // 128 ms with a period of 100, at full resolution.
     const Governed run("fast", "at 1.5 gpu-load 6400 ms-per-megapixel\nat 11 gpu-load 0 ms\n", 390);
     CHECK(run.widths[14] == kWhole);
@@ -148,9 +168,12 @@ TEST_CASE("displays that are missed though frames seem to fit lower the resoluti
     CHECK(run.widths.back() == kWhole);
 }
 
-TEST_CASE("irregular periods, frames that nobody is to see, other rates and a headset that is taken off are no missed displays") {
+TEST_CASE(
+    "irregular periods, frames that nobody is to see, other rates and a headset that is taken off are no "
+    "missed displays") {
     const Governed run("fast",
-                       "irregular 90\nat 1 should-render off\nat 1.5 should-render on\nat 2 rate 20\nat 2.5 rate 10\nat 3 worn off\n"
+                       "irregular 90\nat 1 should-render off\nat 1.5 should-render on\nat 2 rate 20\nat 2.5 "
+                       "rate 10\nat 3 worn off\n"
                        "at 3.5 worn on\nat 4 visible off\nat 4.5 visible on\n",
                        70);
     CHECK(these(run.changes().empty(), run.widths.back()) == these(true, kWhole));

@@ -7,12 +7,15 @@ SUITE(view_quiet) {
 // A snap turn, a step, the panel away and back again, a hand that points at it; then the session is lost.
 const std::string kStay =
     "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 4 position 0.2 1.6 -0.1 turn 15 0\n"
-    "axis right thumbstick 1.2 0 0\naxis right thumbstick 1.21 1 0\naxis right thumbstick 1.3 1 0\naxis right thumbstick 1.31 0 0\n"
-    "axis left thumbstick 1.6 0 0\naxis left thumbstick 1.61 0 1\naxis left thumbstick 1.9 0 1\naxis left thumbstick 1.91 0 0\n"
+    "axis right thumbstick 1.2 0 0\naxis right thumbstick 1.21 1 0\naxis right thumbstick 1.3 1 0\naxis "
+    "right thumbstick 1.31 0 0\n"
+    "axis left thumbstick 1.6 0 0\naxis left thumbstick 1.61 0 1\naxis left thumbstick 1.9 0 1\naxis left "
+    "thumbstick 1.91 0 0\n"
     "press left y 2.2 2.25\npress left y 2.5 2.55\ncontroller right 2.7 position 0.2 1.2 -0.35\n"
     "controller right 2.8 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 3.2 lose-session\nat 3.6 exit\n";
 const std::string kWatched =
-    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
+    "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
     "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
     "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
     "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
@@ -45,20 +48,24 @@ std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
 
 std::string listed(const std::set<std::string>& kinds) { return fmt::format("{}", fmt::join(kinds, " ")); }
 
-TEST_CASE("no frame of a running viewer waits or makes anything after the first second, until its session is lost") {
+TEST_CASE(
+    "no frame of a running viewer waits or makes anything after the first second, until its session is "
+    "lost") {
     for (const std::string mode : {"temporal", "predicted"}) {
         CAPTURE(mode);
         const Workplace work;
-        const ViewRun run = runView(work, "stay", kStay, "builtin:slanted-wall --load-first --mode " + mode, kWatched);
+        const ViewRun run =
+            runView(work, "stay", kStay, "builtin:slanted-wall --load-first --mode " + mode, kWatched);
         INFO(run.outcome.output << run.outcome.errors);
         CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
         std::map<const Known*, std::set<std::string>> found;
         const std::vector<std::set<std::string>> waits = waitsOf(work);
         for (std::size_t frame = 0; frame < waits.size(); ++frame) {
             const double time_s = static_cast<double>(frame) / 45.0;
-            const Known* const known =
-                std::ranges::find_if(kKnown, [&](const Known& one) { return time_s >= one.begin_s && time_s < one.end_s; });
-            CHECK_MESSAGE((known != std::end(kKnown) || waits[frame].empty()), frame, ": ", listed(waits[frame]));
+            const Known* const known = std::ranges::find_if(
+                kKnown, [&](const Known& one) { return time_s >= one.begin_s && time_s < one.end_s; });
+            CHECK_MESSAGE((known != std::end(kKnown) || waits[frame].empty()), frame, ": ",
+                          listed(waits[frame]));
             found[known].insert(waits[frame].begin(), waits[frame].end());
         }
         CHECK(waits.size() == run.frames.size());
@@ -71,18 +78,23 @@ TEST_CASE("no frame of a running viewer waits or makes anything after the first 
 TEST_CASE("the cut to the other scene of a comparison, and back, waits for nothing") {
     // In the first second everything is made, for both.
     const std::string script =
-        "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\npress right a 1.4 1.8\npress right a 2 2.4\nat 3 exit\n";
+        "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\npress right a 1.4 1.8\npress right a 2 "
+        "2.4\nat 3 exit\n";
     for (const std::string mode : {"temporal", "predicted", "shared"}) {
         CAPTURE(mode);
         const Workplace work;
         const ViewRun run =
-            runView(work, "cut", script, "builtin:slanted-wall --compare builtin:fence --load-first --hide-hands --mode " + mode, kWatched);
+            runView(work, "cut", script,
+                    "builtin:slanted-wall --compare builtin:fence --load-first --hide-hands --mode " + mode,
+                    kWatched);
         INFO(run.outcome.output << run.outcome.errors);
         CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
         CHECK(run.lines("shows builtin:fence").size() == 2);
         std::ifstream file(work.path / "waits.txt");
         std::size_t frames = 0;
-        for (std::string line; std::getline(file, line); ++frames) { CHECK_MESSAGE((frames < 45 || line == std::to_string(frames)), line); }
+        for (std::string line; std::getline(file, line); ++frames) {
+            CHECK_MESSAGE((frames < 45 || line == std::to_string(frames)), line);
+        }
         CHECK(frames == run.frames.size());
     }
 }
@@ -96,19 +108,25 @@ std::string wallWithViewpoints(const Workplace& work) {
     return "wall.ply";
 }
 
-TEST_CASE("nor does one while pictures are taken, a message appears, and the wearer jumps, turns and comes back") {
+TEST_CASE(
+    "nor does one while pictures are taken, a message appears, and the wearer jumps, turns and comes back") {
     for (const std::string mode : {"temporal", "predicted", "shared"}) {
         CAPTURE(mode);
         const Workplace work;
         picturesInto(work);
         const std::string scene = wallWithViewpoints(work);
         Acts acts("rate 45\nsize 64 64\nframes none\n");
-        acts.wait(1.0).click(placeOf("Picture")).click(placeOf("Picture")).press("left y").move("controller right", kRightDown);
+        acts.wait(1.0)
+            .click(placeOf("Picture"))
+            .click(placeOf("Picture"))
+            .press("left y")
+            .move("controller right", kRightDown);
         // From one viewpoint to the next.
         for (int round = 0; round < 3; ++round) { acts.press("right thumbstick").wait(0.2); }
         for (const double aside : {1.0, -1.0}) { acts.push("right thumbstick", {aside, 0.0}, 0.1).wait(0.2); }
         acts.press("left y").click(placeOf("Picture")).wait(0.2);
-        const ViewRun run = runView(work, "jumps", acts.script(), scene + " --load-first --hide-hands --mode " + mode, kWatched);
+        const ViewRun run = runView(work, "jumps", acts.script(),
+                                    scene + " --load-first --hide-hands --mode " + mode, kWatched);
         INFO(run.outcome.output << run.outcome.errors);
         CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
         checkOrder(run, {"viewpoint 1 of 2: beside", "viewpoint 2 of 2: away", "viewpoint 1 of 2: beside"});
@@ -130,11 +148,15 @@ TEST_CASE("a picture of a scene that goes is kept without a wait") {
     }
     Acts acts("rate 45\nsize 64 64\nframes none\n");
     // Frames may be late, and the scene must have been seen in thirty of them.
-    acts.wait(4.0).point(placeOfScene("Next scene", (work.path / "scenes").string())).wait(0.25).press("right trigger", 0.3).wait(2.0);
-    const ViewRun run =
-        runView(work, "goes", acts.script(),
-                "scenes/slanted-wall.ply --load-first --hide-hands --mode shared" + withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
-                kWatched + " SIMULATED_OPENXR_CLOCK=real");
+    acts.wait(4.0)
+        .point(placeOfScene("Next scene", (work.path / "scenes").string()))
+        .wait(0.25)
+        .press("right trigger", 0.3)
+        .wait(2.0);
+    const ViewRun run = runView(work, "goes", acts.script(),
+                                "scenes/slanted-wall.ply --load-first --hide-hands --mode shared" +
+                                    withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
+                                kWatched + " SIMULATED_OPENXR_CLOCK=real");
     INFO(run.outcome.output << run.outcome.errors);
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
     checkOrder(run, {"shows scenes/slanted-wall.ply", "shows scenes/one-splat.ply"});
@@ -147,7 +169,8 @@ TEST_CASE("a picture of a scene that goes is kept without a wait") {
     REQUIRE(busy.size() == 1);
     CHECK(listed(waits[busy[0]]) == "buffer fence-of-last-frame fence-of-this-frame memory");
     std::size_t pictures = 0;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(work.base / "config" / "binosplat")) {
+    for (const auto& file :
+         std::filesystem::recursive_directory_iterator(work.base / "config" / "binosplat")) {
         pictures += file.path().extension() == ".png" ? 1 : 0;
     }
     CHECK(pictures > 0);
@@ -157,8 +180,8 @@ TEST_CASE("new letters come without a wait") {
     const Workplace work;
     REQUIRE(work.run("scene one-splat --out '\u05d7\u05d3\u05e8.ply'").exit_code == 0);
     const std::string script = "rate 45\nsize 64 64\nframes none\nat 4 exit\n";
-    const ViewRun run =
-        runView(work, "letters", script, "'\u05d7\u05d3\u05e8.ply' --load-first", kWatched + " SIMULATED_OPENXR_CLOCK=real");
+    const ViewRun run = runView(work, "letters", script, "'\u05d7\u05d3\u05e8.ply' --load-first",
+                                kWatched + " SIMULATED_OPENXR_CLOCK=real");
     INFO(run.outcome.output << run.outcome.errors);
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
     std::ifstream file(work.path / "waits.txt");
@@ -171,7 +194,8 @@ TEST_CASE("what is drawn is where the eyes are by the last that the runtime said
     const Workplace work;
     const std::string script = "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nat 1 exit\n";
     const ViewRun run =
-        runView(work, "late", script, "builtin:one-splat --load-first --mode predicted --axes view", kWatched + " BINOSPLAT_XR_EARLY=0.01");
+        runView(work, "late", script, "builtin:one-splat --load-first --mode predicted --axes view",
+                kWatched + " BINOSPLAT_XR_EARLY=0.01");
     INFO(run.outcome.output << run.outcome.errors);
     REQUIRE(run.frames.size() > 10);
     const std::size_t frame = run.frames.size() / 2;

@@ -19,13 +19,16 @@ inline const std::string kValidated =
 
 // The same on a device that fails as `faults` says (tests/faults).
 inline std::string withFaults(const std::string& faults, const std::string& environment = kValidated) {
-    return environment + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults " + faults;
+    return environment +
+           " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults " +
+           faults;
 }
 
 // Pictures that are taken go into a folder of the workplace.
 inline void picturesInto(const Workplace& work) {
     std::filesystem::create_directories(work.base / "config");
-    std::ofstream(work.base / "config" / "user-dirs.dirs") << fmt::format("XDG_PICTURES_DIR=\"{}/pictures\"\n", work.path.string());
+    std::ofstream(work.base / "config" / "user-dirs.dirs")
+        << fmt::format("XDG_PICTURES_DIR=\"{}/pictures\"\n", work.path.string());
 }
 
 // A pose from the log, in OpenXR's axes.
@@ -48,14 +51,18 @@ inline Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
     Image part{to - from, picture.channels, {}};
     const auto channels = static_cast<std::size_t>(picture.channels);
     for (std::uint32_t y = from.y; y < to.y; ++y) {
-        const auto row = picture.values.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} * picture.size_px.x + from.x) * channels);
-        part.values.insert(part.values.end(), row, row + static_cast<std::ptrdiff_t>((to.x - from.x) * channels));
+        const auto row =
+            picture.values.begin() +
+            static_cast<std::ptrdiff_t>((std::size_t{y} * picture.size_px.x + from.x) * channels);
+        part.values.insert(part.values.end(), row,
+                           row + static_cast<std::ptrdiff_t>((to.x - from.x) * channels));
     }
     return part;
 }
 // One side of a picture with both eyes side by side.
 inline Image sideOf(const Image& both, int side) {
-    const glm::uvec2 size(both.size_px.x / 2, both.size_px.y), from(static_cast<std::uint32_t>(side) * size.x, 0);
+    const glm::uvec2 size(both.size_px.x / 2, both.size_px.y),
+        from(static_cast<std::uint32_t>(side) * size.x, 0);
     return partOf(both, from, from + size);
 }
 
@@ -70,7 +77,9 @@ struct ViewRun {
     std::vector<nlohmann::json> frames;   // from frames.jsonl
     std::vector<nlohmann::json> between;  // its lines without a frame
 
-    [[nodiscard]] bool says(const std::string& words) const { return outcome.output.find(words) != std::string::npos; }
+    [[nodiscard]] bool says(const std::string& words) const {
+        return outcome.output.find(words) != std::string::npos;
+    }
     // The lines of the output that contain these words.
     [[nodiscard]] std::vector<std::string> lines(const std::string& words) const {
         std::vector<std::string> found;
@@ -82,7 +91,8 @@ struct ViewRun {
     }
     // The first frame displayed this many seconds after the script began, or later.
     [[nodiscard]] std::size_t frameAt(double seconds) const {
-        const auto found = std::ranges::find_if(frames, [&](const nlohmann::json& frame) { return secondsOf(frame) > seconds - 1e-4; });
+        const auto found = std::ranges::find_if(
+            frames, [&](const nlohmann::json& frame) { return secondsOf(frame) > seconds - 1e-4; });
         CAPTURE(seconds);
         REQUIRE(found != frames.end());
         return static_cast<std::size_t>(found - frames.begin());
@@ -95,14 +105,18 @@ struct ViewRun {
         return frame;
     }
     [[nodiscard]] double endSeconds() const { return secondsOf(frames.back()); }
-    static double secondsOf(const nlohmann::json& frame) { return 1e-9 * frame.at("display_time_ns").get<double>() - 1.0; }
+    static double secondsOf(const nlohmann::json& frame) {
+        return 1e-9 * frame.at("display_time_ns").get<double>() - 1.0;
+    }
 
     // What the eye saw in a frame.
     [[nodiscard]] Image eye(std::size_t frame, int side) const {
         return sideOf(readPicture(out / fmt::format("frame_{:06}.png", frame)), side);
     }
     // How alike two frames look to the left eye, in dB.
-    [[nodiscard]] double likeness(std::size_t a, std::size_t b) const { return compare(eye(a, 0), eye(b, 0)).psnrDb(); }
+    [[nodiscard]] double likeness(std::size_t a, std::size_t b) const {
+        return compare(eye(a, 0), eye(b, 0)).psnrDb();
+    }
     [[nodiscard]] LoggedEye loggedEye(std::size_t frame, std::size_t side) const {
         const nlohmann::json& eye = frames.at(frame).at("eyes").at(side);
         const auto tangent = [&](const char* name) { return std::tan(eye.at("fov").at(name).get<double>()); };
@@ -123,20 +137,27 @@ struct ViewRun {
     }
     // The size of the part of the picture that the eye sees; the picture may be larger.
     [[nodiscard]] glm::ivec2 sizePx(std::size_t frame, std::size_t side) const {
-        const nlohmann::json picture = view(frame, side), &fov = picture.at("fov"), &rect = picture.at("rect");
+        const nlohmann::json picture = view(frame, side), &fov = picture.at("fov"),
+                             &rect = picture.at("rect");
         const auto tangent = [&](const char* name) { return std::tan(fov.at(name).get<double>()); };
         const LoggedEye eye = loggedEye(frame, side);
         const double across = (eye.right - eye.left) / (tangent("right") - tangent("left"));
         const double down = (eye.up - eye.down) / (tangent("up") - tangent("down"));
-        return glm::ivec2(glm::round(glm::dvec2(across * rect.at(2).get<double>(), down * rect.at(3).get<double>())));
+        return glm::ivec2(
+            glm::round(glm::dvec2(across * rect.at(2).get<double>(), down * rect.at(3).get<double>())));
     }
     [[nodiscard]] int width(std::size_t frame) const { return sizePx(frame, 0).x; }
     // Where the eyes' views are in the room.
-    [[nodiscard]] glm::dvec3 viewPlace(std::size_t frame, std::size_t side) const { return poseOf(view(frame, side).at("pose")).position; }
-    [[nodiscard]] std::int64_t periodNs(std::size_t frame) const { return frames.at(frame).at("period_ns").get<std::int64_t>(); }
+    [[nodiscard]] glm::dvec3 viewPlace(std::size_t frame, std::size_t side) const {
+        return poseOf(view(frame, side).at("pose")).position;
+    }
+    [[nodiscard]] std::int64_t periodNs(std::size_t frame) const {
+        return frames.at(frame).at("period_ns").get<std::int64_t>();
+    }
     // Things in the room, told apart by their size: the panel is the largest picture, and rays are thin.
     [[nodiscard]] std::vector<nlohmann::json> panels(std::size_t frame) const {
-        return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) > 256; });
+        return quadsWhere(
+            frame, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) > 256; });
     }
     [[nodiscard]] std::vector<nlohmann::json> rays(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("size").at(0) < 0.01; });
@@ -144,11 +165,13 @@ struct ViewRun {
     // Those of this width in metres: hands, parts of controllers, the target of a teleport.
     [[nodiscard]] std::vector<nlohmann::json> quadsAsWide(std::size_t frame, double width_m) const {
         return quadsWhere(frame, [&](const nlohmann::json& quad) {
-            return quad.at("space") != "VIEW" && std::abs(quad.at("size").at(0).get<double>() - width_m) < 1e-4;
+            return quad.at("space") != "VIEW" &&
+                   std::abs(quad.at("size").at(0).get<double>() - width_m) < 1e-4;
         });
     }
     template <typename Condition>
-    [[nodiscard]] std::vector<nlohmann::json> quadsWhere(std::size_t frame, const Condition& condition) const {
+    [[nodiscard]] std::vector<nlohmann::json> quadsWhere(std::size_t frame,
+                                                         const Condition& condition) const {
         std::vector<nlohmann::json> found;
         for (const auto& quad : layers(frame, "quad")) {
             if (condition(quad)) { found.push_back(quad); }
@@ -158,12 +181,13 @@ struct ViewRun {
 };
 
 // Runs `view` with `arguments`, while a script with these lines drives the headset.
-inline ViewRun runView(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
-                       const std::string& environment = kValidated) {
+inline ViewRun runView(const Workplace& work, const std::string& name, const std::string& script,
+                       const std::string& arguments, const std::string& environment = kValidated) {
     std::ofstream(work.path / (name + ".script")) << script;
     ViewRun run;
     run.out = work.path / name;
-    run.outcome = work.run(fmt::format("view {0} --simulate {1}.script --out {1}", arguments, name), environment);
+    run.outcome =
+        work.run(fmt::format("view {0} --simulate {1}.script --out {1}", arguments, name), environment);
     std::ifstream log(run.out / "frames.jsonl");
     for (std::string line; std::getline(log, line);) {
         nlohmann::json json = nlohmann::json::parse(line);
@@ -186,12 +210,13 @@ inline void checkClean(const ViewRun& run) {
     CHECK(run.outcome.exit_code == 0);
     // The layer was loaded, and reported nothing else.
     CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");
-    CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) == these(std::string::npos, std::string::npos));
+    CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) ==
+          these(std::string::npos, std::string::npos));
 }
 
 // A run that ended like that, and never had more layers than a runtime must accept.
-inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
-                        const std::string& environment = kValidated) {
+inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script,
+                        const std::string& arguments, const std::string& environment = kValidated) {
     const ViewRun run = runView(work, name, script, arguments, environment);
     checkClean(run);
     for (const auto& frame : run.frames) { CHECK(frame.at("layers").size() <= 16); }
@@ -211,7 +236,8 @@ inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said)
 
 using Colour = std::array<float, 3>;
 inline Colour colourAt(const Image& image, glm::uvec2 at) {
-    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
+    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) *
+                                          static_cast<std::size_t>(image.channels));
     return {value[0], value[1], value[2]};
 }
 // For pictures of the same size; compares pixels at the same place.
@@ -219,7 +245,9 @@ template <typename Condition>
 std::size_t countPixels(const Image& a, const Image& b, const Condition& condition) {
     std::size_t found = 0;
     for (std::uint32_t y = 0; y < a.size_px.y; ++y) {
-        for (std::uint32_t x = 0; x < a.size_px.x; ++x) { found += condition(colourAt(a, {x, y}), colourAt(b, {x, y})) ? 1 : 0; }
+        for (std::uint32_t x = 0; x < a.size_px.x; ++x) {
+            found += condition(colourAt(a, {x, y}), colourAt(b, {x, y})) ? 1 : 0;
+        }
     }
     return found;
 }

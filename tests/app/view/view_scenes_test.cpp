@@ -18,10 +18,14 @@ const std::string kWhileLoading = kValidated + " SIMULATED_OPENXR_CLOCK=real";
 // Something was visible in every frame.
 void checkAlwaysShown(const ViewRun& run) {
     REQUIRE(run.frames.size() > 8);
-    for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
+    for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) {
+        REQUIRE(run.layers(frame, "projection").size() == 1);
+    }
 }
 
-TEST_CASE("another scene comes while this one stays, chosen or the next; one that cannot be read gives a message; both are remembered") {
+TEST_CASE(
+    "another scene comes while this one stays, chosen or the next; one that cannot be read gives a message; "
+    "both are remembered") {
     const Workplace work;
     // "scenes" in Hebrew: letters that the panel's font gets while it is shown.
     const std::string name = "\xd7\xa1\xd7\xa6\xd7\xa0\xd7\x95\xd7\xaa";
@@ -37,9 +41,10 @@ TEST_CASE("another scene comes while this one stays, chosen or the next; one tha
     for (const char* widget : {"room1.ply", "Next scene", "room10.ply"}) {
         acts.point(placeOfScene(widget, folder.string())).wait(0.25).press("right trigger", 0.3).wait(0.4);
     }
-    const ViewRun run = runClean(
-        work, "choose", acts.script(),
-        name + "/room10.ply --load-first --mode mono --hide-hands" + withConfig(work, "[view]\npanel-page = \"scenes\"\n"), kWhileLoading);
+    const ViewRun run = runClean(work, "choose", acts.script(),
+                                 name + "/room10.ply --load-first --mode mono --hide-hands" +
+                                     withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
+                                 kWhileLoading);
     const std::string bad = (folder / "room1.ply").string(), next = (folder / "room9.ply").string(),
                       first = (folder / "room10.ply").string();
     checkOrder(run, {"shows " + name + "/room10.ply", bad + ":", "shows " + next, "shows " + first});
@@ -50,14 +55,16 @@ TEST_CASE("another scene comes while this one stays, chosen or the next; one tha
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE_FIXTURE(AtWork, "a streamed scene is there at once, becomes finer while frames go on, and says what is missing") {
+TEST_CASE_FIXTURE(
+    AtWork, "a streamed scene is there at once, becomes finer while frames go on, and says what is missing") {
     splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
                {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
     fs::remove(work.path / "split" / "0_2.sog");
-    const ViewRun run = runClean(work, "streamed",
-                                 "rate 45\nsize 96 96\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1 position 0 1.6 0\n"
-                                 "head 1.6 position 0 1.6 0 turn 90 0\nat 4 exit\n",
-                                 "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
+    const ViewRun run = runClean(
+        work, "streamed",
+        "rate 45\nsize 96 96\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1 position 0 1.6 0\n"
+        "head 1.6 position 0 1.6 0 turn 90 0\nat 4 exit\n",
+        "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
     checkOrder(run, {"shows split", "everything in view is loaded: "});
     CHECK(run.says("16 levels of leaves, 0.0"));
     CHECK(run.says(" s; frames that waited for it: 0"));
@@ -69,12 +76,15 @@ TEST_CASE_FIXTURE(AtWork, "a streamed scene is there at once, becomes finer whil
 }
 #endif
 
-TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on; the panel has it rest, steps, and goes to a frame") {
+TEST_CASE(
+    "a moving scene plays, rests while a button has it rest, and plays on; the panel has it rest, steps, and "
+    "goes to a frame") {
     const Workplace work;
     writeSliding((work.path / "slide").string(), 12, 2000);
     const std::string arguments = "slide --load-first --mode shared --hide-hands --scene-rate 15 ";
-    const ViewRun played = runClean(work, "play", "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
-                                    arguments + "--hide-panel", kWhileLoading);
+    const ViewRun played =
+        runClean(work, "play", "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
+                 arguments + "--hide-panel", kWhileLoading);
     INFO(played.outcome.output);
     checkOrder(played, {"a moving scene of 12 frames, 15 a second", "paused at frame", "plays from frame"});
     // The scene moves, and stands still while it is paused.
@@ -108,7 +118,8 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     CHECK(run.says("frames that waited for them: 0\n"));
 }
 
-TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file that is not overwritten, of what the lenses hide as well") {
+TEST_CASE_FIXTURE(
+    AtWork, "a picture of both eyes is a file that is not overwritten, of what the lenses hide as well") {
     picturesInto(work);
     const auto take = [&](const std::string& name, const std::string& mask, const std::string& options) {
         Acts acts("rate 50\nsize 160 160\nframes from 10 to 10\nvisibility-mask " + mask + "\n");
@@ -119,7 +130,8 @@ TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file that is not overwrit
     };
     const auto filesOf = [&](const ViewRun& run) {
         std::vector<fs::path> files;
-        for (const std::string& line : run.lines("picture " + work.path.string() + "/pictures/slanted-wall-20")) {
+        for (const std::string& line :
+             run.lines("picture " + work.path.string() + "/pictures/slanted-wall-20")) {
             files.emplace_back(line.substr(line.find("/")));
         }
         return files;
@@ -143,11 +155,13 @@ TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file that is not overwrit
         const Image seen = run.eye(10, side);
         const glm::uvec2 from(120, 0), to(160, 160);
         const auto isSame = [](const Colour& a, const Colour& b) { return std::abs(a[0] - b[0]) < 0.01f; };
-        CHECK(countPixels(partOf(seen, from, to), partOf(sideOf(both, side), from, to), isSame) > 40 * 160 * 99 / 100);
+        CHECK(countPixels(partOf(seen, from, to), partOf(sideOf(both, side), from, to), isSame) >
+              40 * 160 * 99 / 100);
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and the wearer let it, in every mode") {
+TEST_CASE_FIXTURE(AtWork,
+                  "the room shows behind the scene where the headset and the wearer let it, in every mode") {
     const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background ";
     const auto begin = [](const std::string& modes, const std::string& room) {
         return "rate 50\nsize 128 128\nframes every 5\nblend-modes " + modes + "\nroom-colour " + room + "\n";
@@ -174,7 +188,8 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
     for (const double seconds : looks) {
         CAPTURE(seconds);
         CHECK(run.frames.at(run.pictureAt(seconds)).at("blend_mode") == "ALPHA_BLEND");
-        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags") == nlohmann::json::array({"blend_texture_source_alpha"}));
+        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags") ==
+              nlohmann::json::array({"blend_texture_source_alpha"}));
         for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, seconds, side, green)); }
     }
     for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, opaque, side, red)); }
@@ -196,7 +211,9 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
     CHECK(isCorner(additive, 0.2, kLeft, green));
 }
 
-TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene while the wearer wants it, and its cameras rest otherwise") {
+TEST_CASE_FIXTURE(AtWork,
+                  "where the room is a layer, it lies below the scene while the wearer wants it, and its "
+                  "cameras rest otherwise") {
     const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background 1,0,0";
     Acts acts("rate 50\nsize 128 128\nframes every 5\npassthrough on\nroom-colour 0.2 0.9 0.4\n");
     const double opaque = acts.look();
@@ -204,11 +221,16 @@ TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene wh
     const double again = acts.click(placeOf("Passthrough", true)).look();
     // The validation layer of OpenXR's SDK refuses layers that it does not know.
     const ViewRun run =
-        runView(work, "run", acts.script(), ahead, "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
+        runView(work, "run", acts.script(), ahead,
+                "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
     INFO(run.outcome.output);
     CHECK(these(run.outcome.exit_code, run.outcome.errors) == these(0, ""));
-    const auto corner = [&](double seconds) { return colourAt(run.eye(run.pictureAt(seconds), kLeft), {0, 0}); };
-    const auto isNear = [](const Colour& a, const glm::vec3& b) { return glm::length(glm::vec3(a[0], a[1], a[2]) - b) < 0.02f; };
+    const auto corner = [&](double seconds) {
+        return colourAt(run.eye(run.pictureAt(seconds), kLeft), {0, 0});
+    };
+    const auto isNear = [](const Colour& a, const glm::vec3& b) {
+        return glm::length(glm::vec3(a[0], a[1], a[2]) - b) < 0.02f;
+    };
     for (const double seconds : {opaque, through, again}) {
         CAPTURE(seconds);
         const nlohmann::json& frame = run.frames.at(run.pictureAt(seconds));
@@ -219,9 +241,10 @@ TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene wh
         CHECK(isNear(corner(seconds), sees ? glm::vec3(0.2f, 0.9f, 0.4f) : glm::vec3(1.0f, 0.0f, 0.0f)));
     }
     // A headset that blends pictures with the room by alpha does so.
-    const ViewRun alpha =
-        runClean(work, "alpha", "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
-                 ahead + withConfig(work, "[view]\npassthrough = true\n"));
+    const ViewRun alpha = runClean(
+        work, "alpha",
+        "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
+        ahead + withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(alpha.frames.at(10).at("blend_mode") == "ALPHA_BLEND");
     CHECK(alpha.layers(10, "passthrough").empty());
 }
@@ -231,13 +254,15 @@ TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no
     std::ofstream(work.base / "config" / "user-dirs.dirs") << "XDG_PICTURES_DIR=\"/proc/no-such-folder\"\n";
     Acts acts("rate 50\nsize 64 64\nframes none\n");
     acts.click(placeOf("Picture")).wait(0.1);
-    const ViewRun run = runClean(work, "nowhere", acts.script(), "builtin:one-splat --load-first --mode mono");
+    const ViewRun run =
+        runClean(work, "nowhere", acts.script(), "builtin:one-splat --load-first --mode mono");
     CHECK(run.says("/proc/no-such-folder: cannot be "));
 }
 
 TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or else of its floor") {
     // In the file, the floor of the atelier is tilted by some 30 degrees.
-    const fs::path folder = work.path / "trained" / "point_cloud" / "iteration_30000", file = folder / "point_cloud.ply";
+    const fs::path folder = work.path / "trained" / "point_cloud" / "iteration_30000",
+                   file = folder / "point_cloud.ply";
     fs::create_directories(folder);
     const glm::dquat tilt = glm::angleAxis(0.5, glm::dvec3(0.0, 0.0, 1.0));
     Scene scene = loadScene("builtin:atelier", 3000);
@@ -257,8 +282,11 @@ TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or el
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));
     // These cameras were held differently, and decide.
     std::ofstream(work.path / "trained" / "cameras.json")
-        << R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0], "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
-    for (const fs::path& source : {file, work.path / "trained"}) { CHECK(glm::length(upOf(source) - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5); }
+        << R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0],)"
+           R"( "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
+    for (const fs::path& source : {file, work.path / "trained"}) {
+        CHECK(glm::length(upOf(source) - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5);
+    }
     // A file that cannot be read counts as none.
     std::ofstream(work.path / "trained" / "cameras.json") << "[{";
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));

@@ -35,12 +35,14 @@ Edge measureEdge(const LoggedEye& eye, const Image& picture) {
         const std::optional<double> column = findEdge(picture, row);
         if (!column) { continue; }
         const double x = *column / picture.size_px.x, y = (row + 0.5) / picture.size_px.y;
-        const glm::dvec3 ray = eye.orientation * glm::dvec3(eye.left + x * (eye.right - eye.left), eye.up + y * (eye.down - eye.up), -1.0);
+        const glm::dvec3 ray = eye.orientation * glm::dvec3(eye.left + x * (eye.right - eye.left),
+                                                            eye.up + y * (eye.down - eye.up), -1.0);
         // The scene's depth is -z of STAGE.
         places.push_back((eye.position + ray * ((-kWallDepth - eye.position.z) / ray.z)).x);
     }
     REQUIRE(places.size() > 40);
-    const double mean = std::accumulate(places.begin(), places.end(), 0.0) / static_cast<double>(places.size());
+    const double mean =
+        std::accumulate(places.begin(), places.end(), 0.0) / static_cast<double>(places.size());
     double worst = 0.0;
     for (const double place : places) { worst = std::max(worst, std::abs(place - mean)); }
     return {mean, worst};
@@ -69,12 +71,17 @@ void checkAtTheBeginning(const ViewRun& run, std::size_t frame) {
     CHECK(glm::length(run.viewPlace(frame, kRight) - glm::dvec3(0.0315, 0.0, 0.0)) < 1e-5);
 }
 
-glm::dvec3 panelInRoom(const ViewRun& run, std::size_t frame) { return poseOf(run.panels(frame).at(0).at("pose")).position; }
+glm::dvec3 panelInRoom(const ViewRun& run, std::size_t frame) {
+    return poseOf(run.panels(frame).at(0).at("pose")).position;
+}
 
-TEST_CASE_FIXTURE(AtWork, "in every mode a wall's edge stays straight and in its place, whatever the frusta, and depth goes along") {
+TEST_CASE_FIXTURE(AtWork,
+                  "in every mode a wall's edge stays straight and in its place, whatever the frusta, and "
+                  "depth goes along") {
     // Asymmetric and canted; then another pose with a tilted head; then other angles.
     const std::string left = "eye left angles -48 36 40 -44", right = "eye right angles -36 48 40 -44";
-    Acts acts("rate 50\nsize 208 192\nframes every 5\nipd 0.068\n" + left + "\n" + right + "\neye left cant 8\neye right cant 8\n");
+    Acts acts("rate 50\nsize 208 192\nframes every 5\nipd 0.068\n" + left + "\n" + right +
+              "\neye left cant 8\neye right cant 8\n");
     const std::vector<std::string> modes{"two-pass", "shared", "predicted"};
     std::vector<double> looks;
     for (const std::string& mode : modes) {
@@ -92,7 +99,8 @@ TEST_CASE_FIXTURE(AtWork, "in every mode a wall's edge stays straight and in its
     }
     const ViewRun run =
         runClean(work, "edge", acts.script(),
-                 "builtin:step-edge --load-first --hide-hands --eye 0,0,0 --look 0,0,4 --mode two-pass" + withConfig(work, kMethodPage));
+                 "builtin:step-edge --load-first --hide-hands --eye 0,0,0 --look 0,0,4 --mode two-pass" +
+                     withConfig(work, kMethodPage));
     CHECK(run.says("the runtime asked for the end"));
     for (std::size_t i = 0; i < looks.size(); ++i) {
         CAPTURE(i);
@@ -112,13 +120,14 @@ TEST_CASE_FIXTURE(AtWork, "the wearer sees what render makes of the same poses a
     std::ofstream(work.path / "headset.toml") << kHeadset;
     // From (0.05, -0.1, 0.2) in the scene; later a step, a turn and a tilt of the head, in OpenXR's axes, and
     // another mode.
-    const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0", dominant = " --dominant right --mode ";
+    const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0",
+                      dominant = " --dominant right --mode ";
     Acts acts("headset headset.toml\nframes from 30 to 90 every 60\n");
     acts.wait(0.2).press("right b").click(onMethod("predicted")).press("right b");
     acts.move("head", "position 0.12 1.52 -0.25 rotation 0.08 -0.15 0.06 0.98").wait(1.1 - acts.now_s);
     const ViewRun run = runClean(work, "run", acts.script(),
-                                 "builtin:fence --load-first --hide-panel --hide-hands --axes view " + start + dominant + "two-pass" +
-                                     withConfig(work, kMethodPage));
+                                 "builtin:fence --load-first --hide-panel --hide-hands --axes view " + start +
+                                     dominant + "two-pass" + withConfig(work, kMethodPage));
     const glm::dvec3 eye(0.05, -0.1, 0.2);
     checkAgreesWithRender(work, run, 30, eye, "--headset headset.toml" + dominant + "two-pass");
     checkAgreesWithRender(work, run, 90, eye, "--headset headset.toml" + dominant + "predicted");
@@ -127,7 +136,8 @@ TEST_CASE_FIXTURE(AtWork, "the wearer sees what render makes of the same poses a
 // What a logged eye sees, in its own axes.
 Eye eyeOf(const ViewRun& run, std::size_t frame, std::size_t side, glm::uvec2 size_px) {
     const LoggedEye logged = run.loggedEye(frame, side);
-    const ViewAngles angles{std::atan(logged.left), std::atan(logged.right), std::atan(logged.up), std::atan(logged.down)};
+    const ViewAngles angles{std::atan(logged.left), std::atan(logged.right), std::atan(logged.up),
+                            std::atan(logged.down)};
     return {{}, intrinsicsFromAngles(angles, size_px), size_px};
 }
 
@@ -135,19 +145,25 @@ Eye eyeOf(const ViewRun& run, std::size_t frame, std::size_t side, glm::uvec2 si
 Image opaqueEye(const ViewRun& run, std::size_t frame, std::size_t side) {
     const Image seen = run.eye(frame, static_cast<int>(side));
     Image opaque{seen.size_px, 4, std::vector<float>(4 * seen.pixelCount(), 1.0f)};
-    for (std::size_t i = 0; i < 3 * seen.pixelCount(); ++i) { opaque.values[i / 3 * 4 + i % 3] = seen.values[i]; }
+    for (std::size_t i = 0; i < 3 * seen.pixelCount(); ++i) {
+        opaque.values[i / 3 * 4 + i % 3] = seen.values[i];
+    }
     return opaque;
 }
 
-TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show what axes that follow the view do, but for one resampling") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "while the head turns, axes that stay show what axes that follow the view do, but for one resampling") {
     std::ofstream(work.path / "headset.toml") << kHeadset;
     // There and back by some ten degrees, half a degree per frame, with a step and a tilt.
     const std::string script =
         "rate 50\nheadset headset.toml\nframes every 5\nhead 0.4 position 0 1.6 0 turn 0 0\n"
-        "head 0.8 position 0.05 1.6 0 rotation -0.02 -0.04 0.01 1\nhead 1.2 position 0.05 1.62 -0.05 rotation 0.02 0.05 0.03 1\nat 1.3 "
+        "head 0.8 position 0.05 1.6 0 rotation -0.02 -0.04 0.01 1\nhead 1.2 position 0.05 1.62 -0.05 "
+        "rotation 0.02 0.05 0.03 1\nat 1.3 "
         "exit\n";
     const auto runWith = [&](const std::string& axes) {
-        return runClean(work, axes, script, "builtin:fence --load-first --hide-panel --hide-hands --mode shared --axes " + axes);
+        return runClean(work, axes, script,
+                        "builtin:fence --load-first --hide-panel --hide-hands --mode shared --axes " + axes);
     };
     const ViewRun view = runWith("view"), stay = runWith("stay");
     std::size_t moves = 0;
@@ -170,7 +186,8 @@ TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show what axes t
             const Eye eye = eyeOf(stay, frame, side, followed.size_px);
             const auto turned = [&](double px) {
                 Eye other = eye;
-                other.world_from_camera.orientation = glm::angleAxis(px / eye.intrinsics.fx, glm::normalize(glm::dvec3(1.0, 1.0, 0.0)));
+                other.world_from_camera.orientation =
+                    glm::angleAxis(px / eye.intrinsics.fx, glm::normalize(glm::dvec3(1.0, 1.0, 0.0)));
                 return other;
             };
             const Image twice = showTurned(showTurned(followed, eye, turned(0.7)), turned(0.7), eye);
@@ -183,23 +200,31 @@ TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show what axes t
 }
 
 TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files, and stop after --frames") {
-    const std::string script = "rate 90\nsize 96 96\nframes every 3\nhead 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn 10 5\n";
+    const std::string script =
+        "rate 90\nsize 96 96\nframes every 3\nhead 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn "
+        "10 5\n";
     const std::string arguments = kWall + " --hide-panel --frames 22";
-    const ViewRun first = runClean(work, "first", script, arguments), second = runView(work, "second", script, arguments);
+    const ViewRun first = runClean(work, "first", script, arguments),
+                  second = runView(work, "second", script, arguments);
     CHECK(first.frames.size() >= 22);
     CHECK(first.frames.size() <= 26);  // STOPPING takes a few frames
-    CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);
+    CHECK(std::system(
+              ("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) ==
+          0);
 }
 
-TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runtime's spaces begin, and again when it recentres") {
+TEST_CASE(
+    "the wearer begins at the scene's own view, upright, wherever the runtime's spaces begin, and again when "
+    "it recentres") {
     const Workplace work;
     const std::string scene = "builtin:fence --load-first --hide-hands --mode shared";
-    const ViewRun usual = runClean(work, "usual",
-                                   kBeginning +
-                                       "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
-                                       "head 0.6 position 0.8 1.4 0.5 turn 70 0\nhead 0.65 position 0.8 1.4 0.5 turn -130 25\n"
-                                       "at 0.22 recentre\nat 0.7 recentre\nat 1.2 exit\n",
-                                   scene);
+    const ViewRun usual = runClean(
+        work, "usual",
+        kBeginning +
+            "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
+            "head 0.6 position 0.8 1.4 0.5 turn 70 0\nhead 0.65 position 0.8 1.4 0.5 turn -130 25\n"
+            "at 0.22 recentre\nat 0.7 recentre\nat 1.2 exit\n",
+        scene);
     CHECK(usual.says("1.60 m above the floor"));
     CHECK(usual.says("frame 22: the room now begins where the wearer stands, 1.40 m above the floor"));
     for (const std::size_t frame : {5, 10, 22, 23, 25, 105}) { checkAtTheBeginning(usual, frame); }
@@ -211,11 +236,12 @@ TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runt
     CHECK(std::abs(panelInRoom(usual, 5).y - panelInRoom(usual, 105).y) < 1e-5);
     // The head's first valid pose counts. Here the head looks aside before it is lost, and at first only its
     // orientation is known.
-    const ViewRun away = runClean(work, "away",
-                                  kBeginning +
-                                      "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
-                                      "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.5 exit\n",
-                                  scene);
+    const ViewRun away =
+        runClean(work, "away",
+                 kBeginning +
+                     "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
+                     "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.5 exit\n",
+                 scene);
     CHECK(away.says("frame 12: the room now begins where the wearer stands, 1.25 m above the floor"));
     for (const std::size_t frame : {10, 15}) {
         checkAtTheBeginning(away, frame);
@@ -225,9 +251,12 @@ TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runt
     CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(away, 15)) < 1e-5);
 }
 
-TEST_CASE_FIXTURE(AtWork, "the room begins anew where somebody puts the headset on, not on the desk; what jumps comes out of the dark") {
+TEST_CASE_FIXTURE(AtWork,
+                  "the room begins anew where somebody puts the headset on, not on the desk; what jumps "
+                  "comes out of the dark") {
     const std::string script =
-        "size 64 64\nframes every 1\nhead 0 position 0 0.8 0\nhead 0.3 position 0 0.8 0\nhead 0.4 position 1 1.6 0 turn 40 0\n"
+        "size 64 64\nframes every 1\nhead 0 position 0 0.8 0\nhead 0.3 position 0 0.8 0\nhead 0.4 position 1 "
+        "1.6 0 turn 40 0\n"
         "at 0 present off\nat 0.5 present on\nat 1.2 exit\n";
     const std::string arguments = "builtin:slanted-wall --load-first --hide-panel --hide-hands --mode mono";
     const ViewRun run = runClean(work, "lifted", script, arguments);
@@ -247,21 +276,28 @@ TEST_CASE_FIXTURE(AtWork, "the room begins anew where somebody puts the headset 
 
 TEST_CASE_FIXTURE(AtWork, "with the panel hidden a message is a line before the eyes, for some seconds") {
     const std::string script = "size 64 64\nframes none\npress right thumbstick 0.5 0.6\nat 8 exit\n";
-    const ViewRun run = runClean(work, "said", script, "builtin:one-splat --load-first --hide-panel --hide-hands --mode mono");
+    const ViewRun run = runClean(work, "said", script,
+                                 "builtin:one-splat --load-first --hide-panel --hide-hands --mode mono");
     CHECK(run.says("this scene has no viewpoints"));
     const auto lines = [&](double seconds) {
-        return run.quadsWhere(run.frameAt(seconds), [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; }).size();
+        return run
+            .quadsWhere(run.frameAt(seconds),
+                        [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; })
+            .size();
     };
-    for (const auto& [seconds, count] : {std::pair(0.4, 0u), {1.0, 1u}, {5.0, 1u}, {7.5, 0u}}) { CHECK(lines(seconds) == count); }
+    for (const auto& [seconds, count] : {std::pair(0.4, 0u), {1.0, 1u}, {5.0, 1u}, {7.5, 0u}}) {
+        CHECK(lines(seconds) == count);
+    }
 }
 
 TEST_CASE_FIXTURE(AtWork, "the near plane is in metres of the wearer, however large the scene is") {
     // A metre is four scene units, so the fence, one unit ahead, is nearer than 0.3 m.
     const std::string camera = "--eye 0,0,0 --look 0,0,3 --up 0,-1,0 --mode two-pass --metres-per-unit 0.25";
-    const ViewRun run =
-        runClean(work, "near", kBeginning + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
+    const ViewRun run = runClean(work, "near", kBeginning + "at 0.1 exit\n",
+                                 "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
     const auto rendered = [&](const std::string& near) {
-        REQUIRE(work.run("render builtin:fence --order distance --out expected --size 128x128 --fov-x 90 " + camera + " --near " + near)
+        REQUIRE(work.run("render builtin:fence --order distance --out expected --size 128x128 --fov-x 90 " +
+                         camera + " --near " + near)
                     .exit_code == 0);
         return readPicture(work.path / "expected" / "left.png");
     };
@@ -273,7 +309,9 @@ TEST_CASE_FIXTURE(AtWork, "the near plane is in metres of the wearer, however la
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "without a runtime it exits with three and one line that says what was looked for and what to try") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "without a runtime it exits with three and one line that says what was looked for and what to try") {
     const Outcome outcome = work.run("view builtin:fence", "XR_RUNTIME_JSON=/nonexistent/runtime.json");
     INFO(outcome.errors);
     CHECK(outcome.exit_code == 3);
@@ -299,10 +337,14 @@ TEST_CASE_FIXTURE(AtWork, "bad input is known by its exit code, and named") {
              Wrong{"builtin:fence --simulate missing.script", 1, {"missing.script"}},
              Wrong{"builtin:fence --out x", 2, {}},
              Wrong{"builtin:fence --simulate --config scale.toml", 1, {"scale.toml:2"}},
-             Wrong{"builtin:fence --simulate --config quality.toml", 1, {"quality.toml:2", "must be off, sharp, balanced or fast"}},
+             Wrong{"builtin:fence --simulate --config quality.toml",
+                   1,
+                   {"quality.toml:2", "must be off, sharp, balanced or fast"}},
              Wrong{"nowhere.ply --simulate", 1, {"nowhere.ply"}},
              Wrong{"broken.ply --simulate", 1, {"binosplat: broken.ply:"}},
-             Wrong{"builtin:fence --simulate broken.script", 1, {"broken.script, see docs/simulated_script.md"}},
+             Wrong{"builtin:fence --simulate broken.script",
+                   1,
+                   {"broken.script, see docs/simulated_script.md"}},
              Wrong{"builtin:fence --simulate --out mine",
                    1,
                    {"mine/frame_000000.png: not what an earlier run left here, must be moved elsewhere\n",
@@ -312,7 +354,9 @@ TEST_CASE_FIXTURE(AtWork, "bad input is known by its exit code, and named") {
         const Outcome outcome = work.run("view " + wrong.arguments, "DISPLAY= WAYLAND_DISPLAY=");
         INFO(outcome.errors);
         CHECK(outcome.exit_code == wrong.exit_code);
-        for (const std::string& error : wrong.errors) { CHECK(outcome.errors.find(error) != std::string::npos); }
+        for (const std::string& error : wrong.errors) {
+            CHECK(outcome.errors.find(error) != std::string::npos);
+        }
         CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
     }
     CHECK(std::filesystem::file_size(work.path / "mine" / "frame_000000.png") == 7);

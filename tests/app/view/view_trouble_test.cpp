@@ -9,11 +9,14 @@ const std::string kSmall = "rate 90\nsize 64 64\nframes none\n";
 const std::string kOneEye = kOneSplat + " --mode mono --frames 900";
 
 std::size_t countFramesWithLayers(const ViewRun& run, double until_s = 1e9) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        run.frames, [&](const nlohmann::json& frame) { return ViewRun::secondsOf(frame) < until_s && !frame.at("layers").empty(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(run.frames, [&](const nlohmann::json& frame) {
+        return ViewRun::secondsOf(frame) < until_s && !frame.at("layers").empty();
+    }));
 }
 
-TEST_CASE("whatever becomes of the session, the head, the hands and the view, it carries on, and ends while the headset is off") {
+TEST_CASE(
+    "whatever becomes of the session, the head, the hands and the view, it carries on, and ends while the "
+    "headset is off") {
     const Workplace work;
     // A runtime that adds Vulkan features of its own, ends any program that asks it for the mask, and has no
     // headset at first. Sessions are lost before their first frame, during it, and soon after it.
@@ -30,21 +33,33 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     const double off = acts.at("worn off").look(0.3);
     acts.at("worn on").wait(0.15);
     const double lost = acts.at("head off").look(0.06);
-    acts.at("head on").wait(0.05).move("head", "position 0.3 1.5 0.2 turn 0 0").wait(0.05).at("head turn-only");
+    acts.at("head on")
+        .wait(0.05)
+        .move("head", "position 0.3 1.5 0.2 turn 0 0")
+        .wait(0.05)
+        .at("head turn-only");
     const double turning = acts.look(0.01);
     acts.move("head", "position 0.5 1.4 0 turn 20 10", 0.1);
     const double turned = acts.look(0.02);
     acts.at("head on").wait(0.05);
-    const double other = acts.at("eye left angles -60 20 30 -50").at("eye right angles -20 60 50 -20").wait(0.02).look(0.05);
-    acts.at("controller right off").wait(0.01).at("controller left off").wait(0.05).at("controller right on").wait(0.05);
+    const double other =
+        acts.at("eye left angles -60 20 30 -50").at("eye right angles -20 60 50 -20").wait(0.02).look(0.05);
+    acts.at("controller right off")
+        .wait(0.01)
+        .at("controller left off")
+        .wait(0.05)
+        .at("controller right on")
+        .wait(0.05);
     const double end = acts.look(0.05);
     acts.at("worn off").wait(0.2);
-    const ViewRun run =
-        runClean(work, "all", acts.script(),
-                 "builtin:one-splat --load-first --mode shared --frames 900" + withConfig(work, "[view]\nvisibility-mask = false\n"));
+    const ViewRun run = runClean(work, "all", acts.script(),
+                                 "builtin:one-splat --load-first --mode shared --frames 900" +
+                                     withConfig(work, "[view]\nvisibility-mask = false\n"));
     CHECK(run.says("the runtime asked for the end"));
-    CHECK(these(run.lines("has no headset yet: waiting for it").size(), run.lines("another one begins").size()) == these(1, 4));
-    for (const double seconds : {shown, hidden - 0.03, unseen - 0.02, off - 0.02, lost - 0.02, turning, other, end}) {
+    CHECK(these(run.lines("has no headset yet: waiting for it").size(),
+                run.lines("another one begins").size()) == these(1, 4));
+    for (const double seconds :
+         {shown, hidden - 0.03, unseen - 0.02, off - 0.02, lost - 0.02, turning, other, end}) {
         CAPTURE(seconds);
         REQUIRE(run.layers(run.frameAt(seconds), "projection").size() == 1);
         // The scene, not the colour shown while waiting.
@@ -55,14 +70,18 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     CHECK(run.frames.at(run.frameAt(end)).at("session_state") == "FOCUSED");
     // No picture is drawn when none is requested.
     CHECK(run.frames.at(run.frameAt(unseen + 0.02)).at("should_render") == false);
-    for (const auto& frame : run.frames) { CHECK((frame.at("should_render") == true || frame.at("layers").empty())); }
+    for (const auto& frame : run.frames) {
+        CHECK((frame.at("should_render") == true || frame.at("layers").empty()));
+    }
     // Nor while the headset is off.
     CHECK(run.frameAt(off + 0.29) - run.frameAt(off) < 8);
     // A head without a known pose shows nothing; if only its orientation is known, it stays where it was.
     for (std::size_t frame = run.frameAt(lost + 0.01); frame <= run.frameAt(lost + 0.05); ++frame) {
         CHECK(run.layers(frame, "projection").empty());
     }
-    const auto headOf = [&](std::size_t frame) { return 0.5 * (run.viewPlace(frame, 0) + run.viewPlace(frame, 1)); };
+    const auto headOf = [&](std::size_t frame) {
+        return 0.5 * (run.viewPlace(frame, 0) + run.viewPlace(frame, 1));
+    };
     const std::size_t first = run.frameAt(turning + 0.01);
     CHECK(glm::length(headOf(first) - headOf(first - 2)) < 2e-3);
     for (std::size_t frame = first + 1; frame <= run.frameAt(turned); ++frame) {
@@ -73,53 +92,67 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     CHECK(run.view(run.frameAt(other), 1).at("fov").at("up") > 0.872);
 }
 
-TEST_CASE("a headset that lies on the desk at first, and that is unplugged later, is waited for, and the scene goes on with it") {
+TEST_CASE(
+    "a headset that lies on the desk at first, and that is unplugged later, is waited for, and the scene "
+    "goes on with it") {
     const Workplace work;
-    const ViewRun run = runClean(work, "unplugged",
-                                 "rate 90\nsize 256 256\nframes every 5\nvisibility-mask broken\nno-headset-for 2 after-loss\n"
-                                 "at -1 worn off\nat -1 should-render off\nat 0.1 worn on\nat 0.2 should-render on\n"
-                                 "at 0.5 lose-session\nat 0.8 exit\n",
-                                 kOneEye, kValidated + " BINOSPLAT_VISIBILITY_MASK=0");
-    checkOrder(run, {"the headset is gone: waiting for it", "the headset is back", "the runtime asked for the end"});
+    const ViewRun run = runClean(
+        work, "unplugged",
+        "rate 90\nsize 256 256\nframes every 5\nvisibility-mask broken\nno-headset-for 2 after-loss\n"
+        "at -1 worn off\nat -1 should-render off\nat 0.1 worn on\nat 0.2 should-render on\n"
+        "at 0.5 lose-session\nat 0.8 exit\n",
+        kOneEye, kValidated + " BINOSPLAT_VISIBILITY_MASK=0");
+    checkOrder(
+        run, {"the headset is gone: waiting for it", "the headset is back", "the runtime asked for the end"});
     // The panel says so as well, below its widgets.
     const auto pixelOf = [](const glm::dvec2& share) {
         const Panel panel = panelBefore({0.0315, 0.0, 0.0});  // for the left eye
-        const glm::dvec3 at = panel.middle + panel.orientation * glm::dvec3((share - 0.5) * glm::dvec2(1.0, -1.0) * kPanelMetres, 0.0);
+        const glm::dvec3 at =
+            panel.middle +
+            panel.orientation * glm::dvec3((share - 0.5) * glm::dvec2(1.0, -1.0) * kPanelMetres, 0.0);
         return glm::uvec2(128.0 * (glm::dvec2(1.0) + glm::dvec2(at.x, -at.y) / -at.z));
     };
     const auto said = [&](double seconds) {
         return partOf(run.eye(run.pictureAt(seconds), kLeft), pixelOf({0.05, 0.82}), pixelOf({0.8, 0.95}));
     };
-    const auto countOther = [&](double a, double b) { return countPixels(said(a), said(b), std::not_equal_to{}); };
+    const auto countOther = [&](double a, double b) {
+        return countPixels(said(a), said(b), std::not_equal_to{});
+    };
     CHECK(countOther(0.3, 0.4) == 0);
     CHECK(countOther(0.4, 0.72) > 10);
     CHECK(countFramesWithLayers(run, 0.19) == 0);
     CHECK(countFramesWithLayers(run, 0.5) > 10);
     CHECK(run.layers(run.frames.size() - 4, "projection").size() == 1);
     // With the mask, the run would fail.
-    CHECK(runView(work, "with", kSmall + "visibility-mask broken\nat 0.1 exit\n", kOneEye, "2>/dev/null").outcome.exit_code != 0);
+    CHECK(runView(work, "with", kSmall + "visibility-mask broken\nat 0.1 exit\n", kOneEye, "2>/dev/null")
+              .outcome.exit_code != 0);
 }
 
 TEST_CASE("Ctrl-C ends it as the wearer would, be the headset worn, off, gone or not there yet") {
     for (const auto& [script, until] :
-         {std::pair("size 64 64\n", "[ -e seen/frame_000005.png ]"), std::pair("frames none\nat -1 worn off\n", "[ -e seen/frames.jsonl ]"),
-          std::pair("frames none\nno-headset-for 1000000 after-loss\nat 0.1 lose-session\n", "grep -q 'waiting for it' said"),
+         {std::pair("size 64 64\n", "[ -e seen/frame_000005.png ]"),
+          std::pair("frames none\nat -1 worn off\n", "[ -e seen/frames.jsonl ]"),
+          std::pair("frames none\nno-headset-for 1000000 after-loss\nat 0.1 lose-session\n",
+                    "grep -q 'waiting for it' said"),
           std::pair("no-headset-for 1000000\n", "grep -q 'no headset yet' said")}) {
         CAPTURE(script);
         const Workplace work;
         std::ofstream(work.path / "endless.script") << script;
-        const Outcome outcome = work.run(
-            fmt::format("view {} --simulate endless.script --out seen > said & child=$!; "
-                        "until {} || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child; code=$?; cat said; exit $code",
-                        kOneSplat + " --mode mono", until),
-            "DISPLAY= WAYLAND_DISPLAY=");
+        const Outcome outcome =
+            work.run(fmt::format("view {} --simulate endless.script --out seen > said & child=$!; "
+                                 "until {} || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait "
+                                 "$child; code=$?; cat said; exit $code",
+                                 kOneSplat + " --mode mono", until),
+                     "DISPLAY= WAYLAND_DISPLAY=");
         INFO(outcome.errors);
         CHECK(outcome.exit_code == 0);
         CHECK(outcome.output.find(" frames; ") != std::string::npos);
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "sessions that are lost again and again before they show anything are given up in one line, with three") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "sessions that are lost again and again before they show anything are given up in one line, with three") {
     std::string script = kSmall;
     for (int i = 0; i < 12; ++i) { script += fmt::format("at {} lose-session\n", 0.001 + 0.015 * i); }
     const ViewRun run = runView(work, "again", script, kOneEye, "");
@@ -128,16 +161,20 @@ TEST_CASE_FIXTURE(AtWork, "sessions that are lost again and again before they sh
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
 }
 
-TEST_CASE("what only decorates and fails is said once and done without, and a first session that is lost is followed by another one") {
+TEST_CASE(
+    "what only decorates and fails is said once and done without, and a first session that is lost is "
+    "followed by another one") {
     const Workplace work;
     // The hand points at the panel, which pulses. The fifth action space is the gaze's, and the tenth frame
     // has layers.
-    const std::string script = kSmall + "controller right 0 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 0.3 exit\n";
-    const std::string arguments =
-        "builtin:one-splat --load-first --mode mono --frames 200" + withConfig(work, "[view]\nrefresh-rate = 72\neye-tracking = true\n");
+    const std::string script =
+        kSmall + "controller right 0 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 0.3 exit\n";
+    const std::string arguments = "builtin:one-splat --load-first --mode mono --frames 200" +
+                                  withConfig(work, "[view]\nrefresh-rate = 72\neye-tracking = true\n");
     const auto runFaulty = [&](const std::string& name, const std::string& faults) {
         return runView(work, name, script, arguments,
-                       "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
+                       "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
+                       "XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
                        "XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "/openxr' BINOSPLAT_XR_FAULT=" +
                            faults);
     };
@@ -149,65 +186,84 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
     };
     const std::string failed = " failed: XR_ERROR_RUNTIME_FAILURE; going on without ",
                       lacks = " failed: XR_ERROR_FUNCTION_UNSUPPORTED; going on without ";
-    const ViewRun run = runFaulty("decorations",
-                                  "xrCreateSession:-17:1,xrSuggestInteractionProfileBindings:-22:1,xrApplyHapticFeedback:-2,"
-                                  "xrLocateHandJointsEXT:-2,xrGetDisplayRefreshRateFB:missing,xrRequestDisplayRefreshRateFB:missing,"
-                                  "xrEnumerateReferenceSpaces:-2,xrCreateActionSpace:-2:1:4,xrEndFrame:-2:1:10");
+    const ViewRun run = runFaulty(
+        "decorations",
+        "xrCreateSession:-17:1,xrSuggestInteractionProfileBindings:-22:1,xrApplyHapticFeedback:-2,"
+        "xrLocateHandJointsEXT:-2,xrGetDisplayRefreshRateFB:missing,xrRequestDisplayRefreshRateFB:missing,"
+        "xrEnumerateReferenceSpaces:-2,xrCreateActionSpace:-2:1:4,xrEndFrame:-2:1:10");
     INFO(run.outcome.output);
     CHECK(these(run.outcome.errors, run.outcome.exit_code) == these("", 0));
     CHECK(run.says("the runtime asked for the end"));
     CHECK(run.view(run.frames.size() - 4).contains("depth"));
-    checkOnce(run, {"xrCreateSession failed: XR_ERROR_SESSION_LOST; another one begins",
-                    "controllers that the OpenXR runtime rejects: khr/simple_controller (XR_ERROR_PATH_UNSUPPORTED)",
-                    "xrApplyHapticFeedback" + failed + "pulses", "xrLocateHandJointsEXT" + failed + "hand tracking",
-                    "xrGetDisplayRefreshRateFB" + lacks + "the display's refresh rate",
-                    "refresh-rate is 72, this headset refuses it (XR_ERROR_FUNCTION_UNSUPPORTED)",
-                    "xrEnumerateReferenceSpaces" + failed + "the stage's floor", "xrCreateActionSpace" + failed + "eye tracking",
-                    "xrEndFrame" + failed + "hands, rays and the vignette: it refuses a ray"});
+    checkOnce(
+        run,
+        {"xrCreateSession failed: XR_ERROR_SESSION_LOST; another one begins",
+         "controllers that the OpenXR runtime rejects: khr/simple_controller (XR_ERROR_PATH_UNSUPPORTED)",
+         "xrApplyHapticFeedback" + failed + "pulses", "xrLocateHandJointsEXT" + failed + "hand tracking",
+         "xrGetDisplayRefreshRateFB" + lacks + "the display's refresh rate",
+         "refresh-rate is 72, this headset refuses it (XR_ERROR_FUNCTION_UNSUPPORTED)",
+         "xrEnumerateReferenceSpaces" + failed + "the stage's floor",
+         "xrCreateActionSpace" + failed + "eye tracking",
+         "xrEndFrame" + failed + "hands, rays and the vignette: it refuses a ray"});
     // The panel gets its images first, and what hangs beside it gets none. If the program crashes, every line
     // has been written by then.
-    const ViewRun crash = runFaulty("crash",
-                                    "xrCreateSwapchain:-2:1:1,xrCreateHandTrackerEXT:missing,xrEnumerateDisplayRefreshRatesFB:missing,"
-                                    "xrApplyHapticFeedback:crash");
+    const ViewRun crash = runFaulty(
+        "crash",
+        "xrCreateSwapchain:-2:1:1,xrCreateHandTrackerEXT:missing,xrEnumerateDisplayRefreshRatesFB:missing,"
+        "xrApplyHapticFeedback:crash");
     INFO(crash.outcome.output);
     CHECK(crash.outcome.exit_code != 0);
-    checkOnce(crash,
-              {"xrCreateSwapchain" + failed + "rays, controllers and the vignette", "xrCreateHandTrackerEXT" + lacks + "hand tracking",
-               "xrEnumerateDisplayRefreshRatesFB" + lacks + "a choice of refresh rates", ": the room now begins where the wearer stands"});
+    checkOnce(crash, {"xrCreateSwapchain" + failed + "rays, controllers and the vignette",
+                      "xrCreateHandTrackerEXT" + lacks + "hand tracking",
+                      "xrEnumerateDisplayRefreshRatesFB" + lacks + "a choice of refresh rates",
+                      ": the room now begins where the wearer stands"});
 }
 
-TEST_CASE_FIXTURE(AtWork, "a lost runtime gives one line and exit code 3; without a stage the floor is that of LOCAL_FLOOR") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "a lost runtime gives one line and exit code 3; without a stage the floor is that of LOCAL_FLOOR") {
     const std::string floor = "stage off\nhead 0 position 0.2 1.45 0.1\n";
     for (const char* time : {"0", "0.02", "0.2"}) {
         // Older validation layers do not know that space.
-        const ViewRun run =
-            runView(work, "gone", kSmall + floor + fmt::format("at {} lose-instance\n", time), kOneEye, "DISPLAY= BINOSPLAT_VALIDATION=1");
+        const ViewRun run = runView(work, "gone", kSmall + floor + fmt::format("at {} lose-instance\n", time),
+                                    kOneEye, "DISPLAY= BINOSPLAT_VALIDATION=1");
         INFO(run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors) == these(3, "binosplat: the OpenXR runtime is going away\n"));
-        if (std::string(time) == "0.2") { CHECK(run.says("the room now begins where the wearer stands, 1.45 m above the floor")); }
+        CHECK(these(run.outcome.exit_code, run.outcome.errors) ==
+              these(3, "binosplat: the OpenXR runtime is going away\n"));
+        if (std::string(time) == "0.2") {
+            CHECK(run.says("the room now begins where the wearer stands, 1.45 m above the floor"));
+        }
     }
     // A runtime that offers the space and does not create it does not prevent the start.
     const ViewRun refused = runView(work, "refused", kSmall + floor + "at 0.1 exit\n", kOneEye);
     CHECK(refused.outcome.exit_code == 0);
-    CHECK((refused.says("the room now begins where the wearer stands\n") || refused.says("1.45 m above the floor")));
+    CHECK((refused.says("the room now begins where the wearer stands\n") ||
+           refused.says("1.45 m above the floor")));
 }
 
 TEST_CASE_FIXTURE(AtWork, "depth that the runtime offers and refuses is left out, once it is known") {
     for (const std::string what : {"images", "layers"}) {
         CAPTURE(what);
-        const ViewRun run = runClean(work, "depth", kSmall + "refuse-depth " + what + "\nat 0.1 exit\n", kOneEye);
+        const ViewRun run =
+            runClean(work, "depth", kSmall + "refuse-depth " + what + "\nat 0.1 exit\n", kOneEye);
         CHECK(countFramesWithLayers(run) > 5);
         for (std::size_t frame = 0; frame < run.frames.size(); ++frame) {
-            for (const auto& layer : run.layers(frame, "projection")) { CHECK_FALSE(layer.at("views").at(0).contains("depth")); }
+            for (const auto& layer : run.layers(frame, "projection")) {
+                CHECK_FALSE(layer.at("views").at(0).contains("depth"));
+            }
         }
         CHECK(run.says("going on without depth") == (what == "layers"));
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "while a scene loads frames go on, with the room behind it where the wearer wants that, and an exit is obeyed") {
-    const ViewRun run = runClean(
-        work, "loading", "rate 90\nsize 32 32\nframes from 3 to 3\nblend-modes alpha-blend opaque\nroom-colour 0.2 0.9 0.4\nat 0.2 exit\n",
-        "builtin:atelier --hide-hands" + withConfig(work, "[view]\npassthrough = true\n"));
+TEST_CASE_FIXTURE(AtWork,
+                  "while a scene loads frames go on, with the room behind it where the wearer wants that, "
+                  "and an exit is obeyed") {
+    const ViewRun run =
+        runClean(work, "loading",
+                 "rate 90\nsize 32 32\nframes from 3 to 3\nblend-modes alpha-blend opaque\nroom-colour 0.2 "
+                 "0.9 0.4\nat 0.2 exit\n",
+                 "builtin:atelier --hide-hands" + withConfig(work, "[view]\npassthrough = true\n"));
     // The background and the panel's progress were there from the first visible frame on.
     CHECK(countFramesWithLayers(run) >= 15);
     CHECK(run.frames.size() < 40);
@@ -220,15 +276,18 @@ TEST_CASE_FIXTURE(AtWork, "while a scene loads frames go on, with the room behin
 TEST_CASE_FIXTURE(AtWork, "whoever leaves while a large scene loads does not wait for the rest of it") {
     // Identical discs, in a file with no blocks on the disk.
     constexpr std::uintmax_t kSplats = 4'000'000;
-    std::string header = "ply\nformat binary_little_endian 1.0\n" + fmt::format("element vertex {}\n", kSplats);
+    std::string header =
+        "ply\nformat binary_little_endian 1.0\n" + fmt::format("element vertex {}\n", kSplats);
     const char* const names[]{"x",       "y",       "z",     "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
                               "scale_0", "scale_1", "rot_0", "rot_1",  "rot_2",  "rot_3"};
     for (const char* name : names) { header += fmt::format("property float {}\n", name); }
     std::ofstream(work.path / "large.ply") << header << "end_header\n";
     const std::uintmax_t bytes = kSplats * sizeof(float) * std::size(names);
-    std::filesystem::resize_file(work.path / "large.ply", std::filesystem::file_size(work.path / "large.ply") + bytes);
+    std::filesystem::resize_file(work.path / "large.ply",
+                                 std::filesystem::file_size(work.path / "large.ply") + bytes);
     std::ofstream(work.path / "leave.script") << kSmall << "at 0 exit\n";
-    const Outcome outcome = work.run("view large.ply --hide-panel --simulate leave.script", withFaults("BINOSPLAT_FAULT_READ=read"));
+    const Outcome outcome = work.run("view large.ply --hide-panel --simulate leave.script",
+                                     withFaults("BINOSPLAT_FAULT_READ=read"));
     CHECK(outcome.exit_code == 0);
     std::uintmax_t read = 0;
     std::ifstream(work.path / "read") >> read;
@@ -250,7 +309,8 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
             }
             looks.push_back(acts.look());
         }
-        return runClean(work, mask, acts.script(), kWall + " --hide-panel --mode mono" + withConfig(work, kMethodPage));
+        return runClean(work, mask, acts.script(),
+                        kWall + " --hide-panel --mode mono" + withConfig(work, kMethodPage));
     };
     const ViewRun without = runMasked("off"), with = runMasked("on");
     CHECK_FALSE(without.says("the lenses hide"));
@@ -265,7 +325,9 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
             INFO("look ", look, ", side ", side);
             const Image a = without.eye(frame, side), b = with.eye(frame, side);
             const auto isBlack = [](const Colour&, const Colour& after) { return after == Colour{}; };
-            const auto isOther = [](const Colour& before, const Colour& after) { return after != Colour{} && after != before; };
+            const auto isOther = [](const Colour& before, const Colour& after) {
+                return after != Colour{} && after != before;
+            };
             if (look == 0) {
                 CHECK(a.values == b.values);
                 continue;
@@ -277,12 +339,14 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for: what they told of is asked for again") {
+TEST_CASE_FIXTURE(AtWork,
+                  "events that the runtime loses are made up for: what they told of is asked for again") {
     Acts acts("rate 50\nsize 200 200\nframes none\nvisibility-mask on\n");
     acts.wait(0.2).at("eye left angles -45 60 45 -45").wait(0.3);
     const auto lines = [&](const std::string& name, const std::string& lost) {
         const ViewRun run = runView(work, name, acts.script(), kWall + " --hide-panel --mode shared",
-                                    "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
+                                    "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
+                                    "XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
                                     "XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "/openxr' " +
                                         lost);
         INFO(run.outcome.output << run.outcome.errors);
@@ -302,11 +366,13 @@ TEST_CASE_FIXTURE(AtWork, "depth is not submitted where the config or the panel 
     const double given = acts.look();
     const double kept = acts.click(onMethod("Give the headset depth", true)).look();
     const double given_again = acts.click(onMethod("Give the headset depth", true)).look();
-    const ViewRun switched = runClean(work, "switched", acts.script(), kOneEye + withConfig(work, kMethodPage));
+    const ViewRun switched =
+        runClean(work, "switched", acts.script(), kOneEye + withConfig(work, kMethodPage));
     for (const double seconds : {given, kept, given_again}) {
         CHECK(switched.view(switched.frameAt(seconds)).contains("depth") == (seconds != kept));
     }
-    const ViewRun run = runClean(work, "depth", kSmall + "at 0.1 exit\n", kOneEye + withConfig(work, "[view]\nsubmit-depth = false\n"));
+    const ViewRun run = runClean(work, "depth", kSmall + "at 0.1 exit\n",
+                                 kOneEye + withConfig(work, "[view]\nsubmit-depth = false\n"));
     const ViewRun with = runClean(work, "with", kSmall + "at 0.1 exit\n", kOneEye);
     CHECK(countFramesWithLayers(run) > 5);
     CHECK_FALSE(run.view(run.frames.size() - 4).contains("depth"));
@@ -314,7 +380,8 @@ TEST_CASE_FIXTURE(AtWork, "depth is not submitted where the config or the panel 
 }
 
 TEST_CASE_FIXTURE(AtWork, "a runtime without the Vulkan extension is refused in one line") {
-    const ViewRun run = runView(work, "refused", kSmall + "extension XR_KHR_vulkan_enable2 off\n", "builtin:slanted-wall", "");
+    const ViewRun run = runView(work, "refused", kSmall + "extension XR_KHR_vulkan_enable2 off\n",
+                                "builtin:slanted-wall", "");
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.errors.find("XR_KHR_vulkan_enable2") != std::string::npos);
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);

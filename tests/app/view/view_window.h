@@ -24,7 +24,8 @@ inline bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xd
 class Program {
 public:
     Program(const std::filesystem::path& folder, const std::string& command)
-        : pipe_(popen(fmt::format("cd '{}' && echo $$ && exec {} 2>&1", folder.string(), command).c_str(), "re")) {
+        : pipe_(popen(fmt::format("cd '{}' && echo $$ && exec {} 2>&1", folder.string(), command).c_str(),
+                      "re")) {
         process_ = std::stoi(waitFor("\n"));
     }
     Program(const Program&) = delete;
@@ -60,7 +61,8 @@ private:
     bool readMore() {
         pollfd waits{fileno(pipe_), POLLIN, 0};
         std::array<char, 4096> part{};
-        const ssize_t bytes = poll(&waits, 1, kPatienceMs) == 1 ? read(fileno(pipe_), part.data(), part.size()) : -1;
+        const ssize_t bytes =
+            poll(&waits, 1, kPatienceMs) == 1 ? read(fileno(pipe_), part.data(), part.size()) : -1;
         if (bytes > 0) { said_.append(part.data(), static_cast<std::size_t>(bytes)); }
         return bytes > 0;
     }
@@ -78,8 +80,10 @@ public:
     // Before that it complains about display numbers that are taken.
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
-          server_(folder, fmt::format("sh -c 'exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null'", kScreenPx.x,
-                                      kScreenPx.y)),
+          server_(folder,
+                  fmt::format(
+                      "sh -c 'exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null'",
+                      kScreenPx.x, kScreenPx.y)),
           name(":" + std::to_string(std::stoi(server_.waitFor("\n")))) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -102,7 +106,9 @@ public:
         for (std::size_t y = 0; y < image.size_px.y; ++y) {
             const char* pixel = bytes.data() + start + y * row_bytes;
             for (std::size_t x = 0; x < image.size_px.x; ++x, pixel += 4, value += 3) {
-                for (int i = 0; i < 3; ++i) { value[i] = static_cast<float>(static_cast<std::uint8_t>(pixel[2 - i])) / 255.0f; }
+                for (int i = 0; i < 3; ++i) {
+                    value[i] = static_cast<float>(static_cast<std::uint8_t>(pixel[2 - i])) / 255.0f;
+                }
             }
         }
         return image;
@@ -136,7 +142,8 @@ public:
     void clickCross(unsigned long window) const {
         // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a
         // number.
-        send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32, atomOf("WM_DELETE_WINDOW")});
+        send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32,
+                      atomOf("WM_DELETE_WINDOW")});
     }
     // What a window manager records on a window that it takes off the screen (3), or brings back (1).
     void minimize(unsigned long window, bool is_gone) const {
@@ -160,7 +167,8 @@ public:
             std::array<int, 17> rest{};
         } hints;
         long supplied = 0;
-        REQUIRE(find<int (*)(void*, unsigned long, void*, long*)>("XGetWMNormalHints")(display_, window, &hints, &supplied) != 0);
+        REQUIRE(find<int (*)(void*, unsigned long, void*, long*)>("XGetWMNormalHints")(
+                    display_, window, &hints, &supplied) != 0);
         constexpr long kMostSize = 1 << 5, kShape = 1 << 7;
         return {(hints.flags & kMostSize) == 0, (hints.flags & kShape) != 0};
     }
@@ -170,14 +178,16 @@ private:
         return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
     }
     // A property of a window: `count` numbers of so many bits.
-    void change(unsigned long window, unsigned long property, unsigned long kind, int bits, const void* numbers, std::size_t count) const {
-        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const void*, int)>("XChangeProperty")(
-            display_, window, property, kind, bits, 0, numbers, static_cast<int>(count));
+    void change(unsigned long window, unsigned long property, unsigned long kind, int bits,
+                const void* numbers, std::size_t count) const {
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const void*, int)>(
+            "XChangeProperty")(display_, window, property, kind, bits, 0, numbers, static_cast<int>(count));
         find<int (*)(void*, int)>("XSync")(display_, 0);
     }
     // An XEvent is 24 longs.
     void send(unsigned long window, std::array<unsigned long, 24> event) const {
-        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, event.data()) != 0);
+        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0,
+                                                                                  event.data()) != 0);
         find<int (*)(void*, int)>("XSync")(display_, 0);
     }
     template <typename Function>
@@ -204,9 +214,12 @@ inline const Desk& desk(int dpi = 96) {
     desk.connection.setDpi(dpi);
     return desk;
 }
-inline std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
+inline std::string moveTo(const glm::dvec2& place) {
+    return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y);
+}
 inline void hands(const std::string& does) {
-    const std::string command = "DISPLAY=" + desk().screen.name + " timeout 60 xdotool " + does + " >/dev/null";
+    const std::string command =
+        "DISPLAY=" + desk().screen.name + " timeout 60 xdotool " + does + " >/dev/null";
     INFO(command);
     REQUIRE(std::system(command.c_str()) == 0);
 }
@@ -214,19 +227,24 @@ inline void hands(const std::string& does) {
 // A number of the window with this name, as xdotool prints it: "WINDOW=2097154", "WIDTH=648" and so on.
 inline unsigned long numberOfWindow(const std::string& name, const std::string& what) {
     const std::string file = (desk().screen.folder() / "number").string();
-    hands(fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n 's/^{}=//p' | tee '{}'", name, what,
-                      file));
+    hands(
+        fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n "
+                    "'s/^{}=//p' | tee '{}'",
+                    name, what, file));
     unsigned long number = 0;
     std::ifstream(file) >> number;
     REQUIRE(number != 0);
     return number;
 }
-inline void clickCross(const std::string& window_name) { desk().connection.clickCross(numberOfWindow(window_name, "WINDOW")); }
+inline void clickCross(const std::string& window_name) {
+    desk().connection.clickCross(numberOfWindow(window_name, "WINDOW"));
+}
 
 // With the real clock: in lock-step it would draw as fast as it can while the input is on its way.
 inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
     return "env DISPLAY=" + desk(dpi).screen.name +
-           " WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 SIMULATED_OPENXR_CLOCK=real XDG_CONFIG_HOME=\"$PWD/../config\" "
+           " WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 SIMULATED_OPENXR_CLOCK=real "
+           "XDG_CONFIG_HOME=\"$PWD/../config\" "
            "PATH=\"$PWD/tools:$PATH\" '" BINOSPLAT_PROGRAM "' view " +
            arguments;
 }
@@ -235,8 +253,11 @@ inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
 class Viewer {
 public:
     Viewer(const Workplace& work, const std::string& script, const std::string& options = "", int dpi = 96)
-        : program_((std::ofstream(work.path / "desk.script") << script, work.path),
-                   viewOnDesk("builtin:slanted-wall --load-first --mode mono --simulate desk.script --out seen " + options, dpi)) {
+        : program_(
+              (std::ofstream(work.path / "desk.script") << script, work.path),
+              viewOnDesk("builtin:slanted-wall --load-first --mode mono --simulate desk.script --out seen " +
+                             options,
+                         dpi)) {
         // While the scene loads, the panel has another layout.
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         // Keys go to the window that contains the mouse.
@@ -261,13 +282,15 @@ public:
         handsInTurn({moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx), "mousedown 1", "mouseup 1"});
     }
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
-        handsInTurn({moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)});
+        handsInTurn({moveTo(from), fmt::format("mousedown {}", button), moveTo(to),
+                     fmt::format("mouseup {}", button)});
     }
     // Where the wearer's room is now, according to the viewer's saved settings.
     Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
         REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");
-        const std::string text = textIn(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
+        const std::string text =
+            textIn(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
         const auto valueOf = [&](const std::string& key) {
             const std::size_t at = text.find(key + " = ");
             REQUIRE(at != std::string::npos);
@@ -283,7 +306,8 @@ public:
         CHECK(program_.exitCode() == 0);
         INFO(program_.said());
         CHECK(program_.said().find("frames; ") != std::string::npos);
-        CHECK(these(program_.said().find("VUID"), program_.said().find("no window")) == these(std::string::npos, std::string::npos));
+        CHECK(these(program_.said().find("VUID"), program_.said().find("no window")) ==
+              these(std::string::npos, std::string::npos));
     }
 
     [[nodiscard]] Program& program() { return program_; }

@@ -14,7 +14,9 @@ SUITE(view_window) {
 const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
 const std::string kSmall = "rate 60\nsize 96 96\nframes none\n";
 
-std::string onDesk() { return "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= DISPLAY=" + desk().screen.name; }
+std::string onDesk() {
+    return "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= DISPLAY=" + desk().screen.name;
+}
 
 // In the fork that is the viewer: files, separated by colons, that are dropped once it shows frames, and,
 // after a comma, files dropped a second and a half later. How a desktop and a window talk to each other
@@ -95,7 +97,9 @@ double turnBetween(const Similarity& a, const Similarity& b) {
     const glm::dquat turn = glm::conjugate(a.orientation) * b.orientation;
     return 2.0 * std::atan2(turn.y, turn.w);
 }
-glm::dvec3 stepBetween(const Similarity& a, const Similarity& b) { return glm::conjugate(a.orientation) * (b.position - a.position); }
+glm::dvec3 stepBetween(const Similarity& a, const Similarity& b) {
+    return glm::conjugate(a.orientation) * (b.position - a.position);
+}
 
 // Escape, or the window's cross, ends the program in a headset with these script lines.
 void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
@@ -108,14 +112,17 @@ void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
     if (dpi != 96) {
         // The window follows the desktop's scale, and may be resized in its shape.
         const double scale = dpi / 96.0;
-        const glm::dvec2 size(numberOfWindow("^binosplat$", "WIDTH"), numberOfWindow("^binosplat$", "HEIGHT"));
+        const glm::dvec2 size(numberOfWindow("^binosplat$", "WIDTH"),
+                              numberOfWindow("^binosplat$", "HEIGHT"));
         CHECK(size == scale * glm::dvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
-        const auto [resizes, keeps_shape] = desk(dpi).connection.resizesInShape(numberOfWindow("^binosplat$", "WINDOW"));
+        const auto [resizes, keeps_shape] =
+            desk(dpi).connection.resizesInShape(numberOfWindow("^binosplat$", "WINDOW"));
         CHECK(resizes);
         CHECK(keeps_shape);
         // The widgets are where they are drawn.
         viewer.handsInTurn(
-            {moveTo(scale * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)), "mousedown 1", "mouseup 1"});
+            {moveTo(scale * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)),
+             "mousedown 1", "mouseup 1"});
         CHECK(viewer.program().waitFor("vignette = false") != "");
     }
     if (by_cross) {
@@ -153,10 +160,12 @@ extern "C" void glfwWaitEventsTimeout(double seconds) {
     drops.erase(drops.begin());
 }
 
-TEST_CASE("frames go on while the window's events hold its thread up, as they do on Windows while it is dragged") {
+TEST_CASE(
+    "frames go on while the window's events hold its thread up, as they do on Windows while it is dragged") {
     if (!haveScreen() || run_in_fork == nullptr) { return; }
     const Workplace work;
-    const ViewRun run = runView(work, "dragged", kSmall + "at 3 exit\n", kScene, onDesk() + " " + kHeldUntil + "=dragged/frames.jsonl");
+    const ViewRun run = runView(work, "dragged", kSmall + "at 3 exit\n", kScene,
+                                onDesk() + " " + kHeldUntil + "=dragged/frames.jsonl");
     INFO(run.outcome.output);
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
     CHECK(run.frames.size() > kFramesHeld);
@@ -164,13 +173,18 @@ TEST_CASE("frames go on while the window's events hold its thread up, as they do
     CHECK(std::filesystem::exists(work.path / "dragged" / "frames.jsonl.went-on"));
 }
 
-TEST_CASE("the last of the scenes dropped on the window is shown, and one that cannot be read is named and changes nothing") {
+TEST_CASE(
+    "the last of the scenes dropped on the window is shown, and one that cannot be read is named and changes "
+    "nothing") {
     if (!haveScreen() || run_in_fork == nullptr) { return; }
     const Workplace work;
-    for (const char* name : {"a", "b"}) { REQUIRE(work.run(fmt::format("scene one-splat --out {}.ply", name)).exit_code == 0); }
+    for (const char* name : {"a", "b"}) {
+        REQUIRE(work.run(fmt::format("scene one-splat --out {}.ply", name)).exit_code == 0);
+    }
     std::ofstream(work.path / "broken.ply") << "ply\nnonsense\n";
-    const ViewRun run = runView(work, "dropped", "rate 45\nsize 64 64\nframes none\nat 4 exit\n", kScene,
-                                onDesk() + " SIMULATED_OPENXR_CLOCK=real " + kDropped + "=a.ply:b.ply,broken.ply");
+    const ViewRun run =
+        runView(work, "dropped", "rate 45\nsize 64 64\nframes none\nat 4 exit\n", kScene,
+                onDesk() + " SIMULATED_OPENXR_CLOCK=real " + kDropped + "=a.ply:b.ply,broken.ply");
     INFO(run.outcome.output);
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
     checkOrder(run, {"shows b.ply", "broken.ply:"});
@@ -192,16 +206,20 @@ TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     CHECK(run.endSeconds() < acts.now_s - 0.5);
 }
 
-TEST_CASE("a lost device ends the viewer with three, also beside a window; of a lost display only the window is gone") {
+TEST_CASE(
+    "a lost device ends the viewer with three, also beside a window; of a lost display only the window is "
+    "gone") {
     if (!haveScreen()) { return; }
     const Workplace work;
     const std::string script = "rate 90\nsize 64 64\nframes none\nat 1 exit\n";
-    const ViewRun device = runView(work, "device", script, kScene, withFaults("BINOSPLAT_FAULT=submit:30:lost", onDesk()));
+    const ViewRun device =
+        runView(work, "device", script, kScene, withFaults("BINOSPLAT_FAULT=submit:30:lost", onDesk()));
     INFO(device.outcome.output);
     CHECK(device.outcome.exit_code == 3);
     CHECK_FALSE(device.says("no window"));
     CHECK(device.outcome.errors.find("DeviceLost") != std::string::npos);
-    const ViewRun display = runView(work, "display", script, kScene, withFaults("BINOSPLAT_FAULT=present:5:surface-lost", onDesk()));
+    const ViewRun display = runView(work, "display", script, kScene,
+                                    withFaults("BINOSPLAT_FAULT=present:5:surface-lost", onDesk()));
     INFO(display.outcome.output);
     CHECK(these(display.outcome.exit_code, display.outcome.errors) == these(0, ""));
     CHECK(display.says("the window is gone: "));
@@ -212,7 +230,8 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     if (!haveScreen()) { return; }
     const Workplace work;
     writeCompilerOfChangedShaders(work.path / "tools");
-    Viewer viewer(work, "rate 30\nsize 192 192\nframes all\n", "--shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
+    Viewer viewer(work, "rate 30\nsize 192 192\nframes all\n",
+                  "--shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
     Program& program = viewer.program();
 
     // The panel by mouse: a click on a switch, and another on the same one.
@@ -256,7 +275,8 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     CHECK(turnBetween(left, grown) == doctest::Approx(0.0));
     viewer.drag(3, place, beside);
     const Similarity tilted = viewer.placement(work);
-    CHECK(glm::angle(glm::conjugate(grown.orientation) * tilted.orientation) == doctest::Approx(0.4).epsilon(1e-4));
+    CHECK(glm::angle(glm::conjugate(grown.orientation) * tilted.orientation) ==
+          doctest::Approx(0.4).epsilon(1e-4));
     viewer.drag(3, beside, place);
 
     // R recentres the room at the head.
@@ -290,7 +310,10 @@ TEST_CASE("Escape, and the window's cross, end it while the headset is off, not 
     checkEnds(kGone, false);
 }
 
-TEST_CASE("Escape, and the window's cross, end it while the headset is off, not looked at or gone, the other way round" * nightly()) {
+TEST_CASE(
+    "Escape, and the window's cross, end it while the headset is off, not looked at or gone, the other way "
+    "round" *
+    nightly()) {
     if (!haveScreen()) { return; }
     checkEnds(kOff, true);
     checkEnds(kElsewhere, false);
@@ -318,7 +341,9 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
 }
 
 // The last test: once it has a device of its own, the test program is not forked any more.
-TEST_CASE("a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is gone") {
+TEST_CASE(
+    "a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is "
+    "gone") {
     if (!haveScreen()) { return; }
     setenv("DISPLAY", desk().screen.name.c_str(), 1);
     unsetenv("WAYLAND_DISPLAY");
@@ -327,7 +352,9 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
     const std::vector<const char*> pictures{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     const std::string see_window = "xdotool search --name '^binosplat$' > /dev/null";
     {
-        const Context context({.device = {}, .instance_extensions = WindowSystem::instanceExtensions(), .device_extensions = pictures});
+        const Context context({.device = {},
+                               .instance_extensions = WindowSystem::instanceExtensions(),
+                               .device_extensions = pictures});
         Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
         // The panel, too: its letters may change before it is drawn again.
         canvas.begin({}, 0.01);

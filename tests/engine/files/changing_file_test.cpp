@@ -16,7 +16,9 @@ SUITE(changing_file) {
 // Loads a scene while `change` happens once; returns the error's message, or "read".
 std::string load(const std::string& path, const std::function<void()>& change, Scene* scene = nullptr) {
     // Time stamps are coarse: make sure that what is written from now on is newer.
-    if (fs::is_regular_file(path)) { fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1)); }
+    if (fs::is_regular_file(path)) {
+        fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
+    }
     bool changed = false;
     try {
         Scene loaded = loadScene(path, 0, nullptr, [&](double) {
@@ -33,9 +35,10 @@ std::string load(const std::string& path, const std::function<void()>& change, S
 
 // Small files of every format that consists of one file, and a PLY that fills several of the reader's blocks.
 std::vector<std::string> writeFiles(const Folder& folder) {
-    std::vector<std::string> paths{folder.write("ascii.ply", makePly(9, true).bytes()), folder.write("packed.ply", makeCompressedPly()),
-                                   folder.write("a.splat", makeSplatFile()), folder.write("a.spz", gzip(makeSpz(3).bytes())),
-                                   folder.file("large.ply")};
+    std::vector<std::string> paths{folder.write("ascii.ply", makePly(9, true).bytes()),
+                                   folder.write("packed.ply", makeCompressedPly()),
+                                   folder.write("a.splat", makeSplatFile()),
+                                   folder.write("a.spz", gzip(makeSpz(3).bytes())), folder.file("large.ply")};
     writePly(makeBuiltin("builtin:atelier", 5000), paths.back());
 #ifdef BINOSPLAT_SOG
     paths.push_back(folder.write("a.sog", makeZip(makeSog())));
@@ -43,7 +46,9 @@ std::vector<std::string> writeFiles(const Folder& folder) {
     return paths;
 }
 
-TEST_CASE("a file that is cut off, grows or is written to while it is read is refused; one that is removed or replaced is read as it was") {
+TEST_CASE(
+    "a file that is cut off, grows or is written to while it is read is refused; one that is removed or "
+    "replaced is read as it was") {
     const Folder folder;
     for (const std::string change : {"cut", "grow", "write", "remove", "replace"}) {
 #ifdef _WIN32  // on Windows, a file that is open stays where it is
@@ -65,13 +70,16 @@ TEST_CASE("a file that is cut off, grows or is written to while it is read is re
                 },
                 &scene);
             const bool is_read = change.starts_with("re");
-            CHECK(message == (is_read ? "read" : path + ": was changed while it was read, must stay as it is until then"));
+            CHECK(
+                message ==
+                (is_read ? "read" : path + ": was changed while it was read, must stay as it is until then"));
             CHECK(scene.size() == (is_read ? splats : 0));
         }
     }
 }
 
-TEST_CASE("blocks are read a little ahead of those that are taken, and whoever stops taking waits for nothing") {
+TEST_CASE(
+    "blocks are read a little ahead of those that are taken, and whoever stops taking waits for nothing") {
     for (const int taken : {0, 1, 9, 40}) {
         int filled = 0;
         {
@@ -85,7 +93,8 @@ TEST_CASE("blocks are read a little ahead of those that are taken, and whoever s
 #ifdef BINOSPLAT_SOG
 TEST_CASE_FIXTURE(InFolder, "a SOG folder that loses a picture while it is read is refused in one line") {
     const std::string path = writeSogFolder(folder, "sog", makeSog());
-    CHECK(withSlashes(load(path, [&] { fs::remove(path + "/q.webp"); })) == withSlashes(path + "/q.webp: no such file"));
+    CHECK(withSlashes(load(path, [&] { fs::remove(path + "/q.webp"); })) ==
+          withSlashes(path + "/q.webp: no such file"));
     (void)writeSogFolder(folder, "sog", makeSog());
     CHECK(contains(load(path, [&] { fs::resize_file(path + "/s.webp", 20); }), path + "/s.webp: "));
 }

@@ -5,7 +5,9 @@
 
 SUITE(compressed_ply_format) {
 
-double shown(const Scene& scene, std::size_t at) { return 0.5 + 0.28209479 * static_cast<double>(scene.sh[at]); }
+double shown(const Scene& scene, std::size_t at) {
+    return 0.5 + 0.28209479 * static_cast<double>(scene.sh[at]);
+}
 
 TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
     LoadNotes notes;
@@ -21,10 +23,12 @@ TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
     // Colours between bounds: r is the maximum of -0.5 to 1.5, g the minimum of 0 to 1, b 128/255 of 0 to 2.
     CHECK(these(shown(scene, 0), shown(scene, 1), shown(scene, 2)) ==
           these(doctest::Approx(1.5), doctest::Approx(0.0), doctest::Approx(256.0 / 255.0)));
-    CHECK(these(notes.three_scales, notes.median_flatness, notes.sh_degree_in_file) == these(true, doctest::Approx(std::exp(-1.0)), 0));
+    CHECK(these(notes.three_scales, notes.median_flatness, notes.sh_degree_in_file) ==
+          these(true, doctest::Approx(std::exp(-1.0)), 0));
 
     // Colours without bounds go from 0 to 1; an opacity of zero stays zero.
-    const Scene plain = loadScene(folder.write("a.ply", CompressedPly{.colour = 0xff008000u, .has_colour_bounds = false}.bytes()));
+    const Scene plain = loadScene(
+        folder.write("a.ply", CompressedPly{.colour = 0xff008000u, .has_colour_bounds = false}.bytes()));
     CHECK(these(shown(plain, 0), shown(plain, 1), shown(plain, 2)) ==
           these(doctest::Approx(1.0), doctest::Approx(0.0), doctest::Approx(128.0 / 255.0)));
     CHECK(plain.opacities[0] == 0.0f);
@@ -33,11 +37,13 @@ TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
 TEST_CASE_FIXTURE(InFolder, "rotation words name their largest component") {
     for (std::uint32_t largest = 0; largest < 4; ++largest) {
         // With scales of -2, -1 and -4, z stays the shortest, so the quaternion is the stored one.
-        const CompressedPly packed{.rotation = largest << 30 | CompressedPly().rotation, .scale = 0x7ffu << 21 | 0x3ffu << 11};
+        const CompressedPly packed{.rotation = largest << 30 | CompressedPly().rotation,
+                                   .scale = 0x7ffu << 21 | 0x3ffu << 11};
         const glm::quat q = loadScene(folder.write("a.ply", packed.bytes())).rotations[0];
         const float stored[] = {q.w, q.x, q.y, q.z};
         for (std::uint32_t i = 0; i < 4; ++i) {
-            CHECK(stored[i] == doctest::Approx(i == largest ? 1.0 : 0.5 / 1023 * std::sqrt(2.0)).epsilon(1e-4));
+            CHECK(stored[i] ==
+                  doctest::Approx(i == largest ? 1.0 : 0.5 / 1023 * std::sqrt(2.0)).epsilon(1e-4));
         }
     }
 }
@@ -79,8 +85,8 @@ TEST_CASE_FIXTURE(InFolder, "a comment asks for antialiasing here, too; absurd c
     const std::string said = replaced(good, "comment made for a test", "comment SplatRenderMode: mip");
     CHECK(loadScene(folder.write("said.ply", said)).antialiased);
     std::string many = replaced(good, "element chunk 2", "element chunk 72057594037927936");
-    many = replaced(replaced(many, "element vertex 300", "element vertex 18446744073709551615"), "element sh 300",
-                    "element sh 18446744073709551615");
+    many = replaced(replaced(many, "element vertex 300", "element vertex 18446744073709551615"),
+                    "element sh 300", "element sh 18446744073709551615");
     CHECK(contains(loadError(folder, many), "bytes are left for 72057594037927936 chunks"));
 }
 

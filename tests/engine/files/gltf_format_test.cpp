@@ -14,7 +14,9 @@ SUITE(gltf_format) {
 
 std::string quoted(const glm::dmat4& matrix) {
     std::string text;
-    for (int i = 0; i < 16; ++i) { text += fmt::format("{}{:.17g}", i == 0 ? "[" : ",", matrix[i / 4][i % 4]); }
+    for (int i = 0; i < 16; ++i) {
+        text += fmt::format("{}{:.17g}", i == 0 ? "[" : ",", matrix[i / 4][i % 4]);
+    }
     return text + "]";
 }
 
@@ -34,8 +36,12 @@ void checkAlike(const Scene& a, const Scene& b) {
     CHECK(a.sh_degree == b.sh_degree);
     checkPlaced(a, b, glm::dmat4(1.0), 1e-6);
     CHECK(a.positions == b.positions);
-    for (std::size_t i = 0; i < a.sh.size(); ++i) { CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5)); }
-    for (std::size_t i = 0; i < a.size(); ++i) { CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6)); }
+    for (std::size_t i = 0; i < a.sh.size(); ++i) {
+        CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5));
+    }
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6));
+    }
 }
 
 TEST_CASE_FIXTURE(InFolder, "a glTF holds what a PLY of the same splats holds, whatever its buffers are") {
@@ -50,23 +56,28 @@ TEST_CASE_FIXTURE(InFolder, "a glTF holds what a PLY of the same splats holds, w
         CHECK(these(notes.lines.empty(), notes.three_scales) == these(true, true));
         checkAlike(loadScene(folder.write("in_its_text", gltf.embedded())), expected);
         (void)folder.write("its splats.bin", gltf.binary());
-        checkAlike(loadScene(folder.write("beside.gltf", gltf.json(R"(,"uri":"its%20splats.bin")"))), expected);
+        checkAlike(loadScene(folder.write("beside.gltf", gltf.json(R"(,"uri":"its%20splats.bin")"))),
+                   expected);
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "a file with its values in turn, and one with other things in it, is read as well") {
+TEST_CASE_FIXTURE(InFolder,
+                  "a file with its values in turn, and one with other things in it, is read as well") {
     const Scene expected = loadScene(folder.write("same.ply", makePly(0, true).bytes()));
     // One row of 56 bytes per splat: position, rotation, scale, opacity, colour.
     const GltfText gltf = makeGltf(0);
     std::string rows, views, accessors;
     const std::size_t widths[] = {12, 16, 12, 4, 12}, starts[] = {0, 36, 84, 120, 132};
     for (std::size_t splat = 0; splat < 3; ++splat) {
-        for (std::size_t i = 0; i < 5; ++i) { rows += gltf.binary().substr(starts[i] + splat * widths[i], widths[i]); }
+        for (std::size_t i = 0; i < 5; ++i) {
+            rows += gltf.binary().substr(starts[i] + splat * widths[i], widths[i]);
+        }
     }
     const char* types[] = {"VEC3", "VEC4", "VEC3", "SCALAR", "VEC3"};
     for (std::size_t i = 0, offset = 0; i < 5; offset += widths[i], ++i) {
-        accessors += fmt::format(R"({}{{"bufferView":0,"byteOffset":{},"componentType":5126,"count":3,"type":"{}"}})", i == 0 ? "" : ",",
-                                 offset, types[i]);
+        accessors +=
+            fmt::format(R"({}{{"bufferView":0,"byteOffset":{},"componentType":5126,"count":3,"type":"{}"}})",
+                        i == 0 ? "" : ",", offset, types[i]);
     }
     std::string json = gltf.json("");
     const auto cut = [&](const std::string& from, const std::string& to) {
@@ -80,51 +91,59 @@ TEST_CASE_FIXTURE(InFolder, "a file with its values in turn, and one with other 
     GltfText more = makeGltf(0);
     more.other_primitives = R"(,{"attributes":{"POSITION":0}},{"mode":0,"attributes":{"POSITION":0}})";
     more.other_keys =
-        R"(,"materials":[{"name":"x"}],"images":[{"uri":"nowhere.png"}],"textures":[{"source":0}],"animations":"broken","extras":{"a":[[[]]]})";
+        R"(,"materials":[{"name":"x"}],"images":[{"uri":"nowhere.png"}],"textures":[{"source":0}],)"
+        R"("animations":"broken","extras":{"a":[[[]]]})";
     LoadNotes notes;
     checkAlike(loadScene(folder.write("more.glb", more.glb()), 0, &notes), expected);
     checkSays(notes.lines, "2 primitives without KHR_gaussian_splatting (meshes, points) were left out");
 }
 
-TEST_CASE_FIXTURE(InFolder, "nodes place their splats: positions, shapes and colours go along, mirrored or not") {
+TEST_CASE_FIXTURE(InFolder,
+                  "nodes place their splats: positions, shapes and colours go along, mirrored or not") {
     const Scene plain = loadScene(folder.write("plain.glb", makeGltf(45).glb()));
     const glm::dmat4 turned = glm::mat4_cast(glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5))));
     const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), {3, -4, 5});
     const auto scaled = [](double x, double y, double z) { return glm::scale(glm::dmat4(1.0), {x, y, z}); };
-    for (const glm::dmat4& placed : {moved, turned, moved * scaled(2.5, 2.5, 2.5), turned * scaled(-1, 1, 1), scaled(-3, -3, -3) * turned,
-                                     moved * turned * scaled(0.5, -0.5, 0.5)}) {
+    for (const glm::dmat4& placed : {moved, turned, moved * scaled(2.5, 2.5, 2.5), turned * scaled(-1, 1, 1),
+                                     scaled(-3, -3, -3) * turned, moved * turned * scaled(0.5, -0.5, 0.5)}) {
         GltfText gltf = makeGltf(45);
         gltf.nodes = R"([{"mesh":0,"matrix":)" + quoted(placed) + "}]";
         const auto [notes, scene] = readScene(folder.write("placed.glb", gltf.glb()));
         CHECK(notes.lines.empty());
         checkPlaced(scene, plain, placed, 1e-5);
         for (std::size_t i = 0; i < 3; ++i) {
-            for (const glm::dvec3 direction :
-                 {glm::dvec3(1, 0, 0), glm::dvec3(0.2, -0.7, 0.4), glm::dvec3(-1, 2, 3), glm::dvec3(0, 0, -1)}) {
+            for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(0.2, -0.7, 0.4),
+                                               glm::dvec3(-1, 2, 3), glm::dvec3(0, 0, -1)}) {
                 const auto colourOf = [&](const Scene& of, const glm::dvec3& seen_along) {
                     return reference::evaluateHarmonics(of.sh.data() + 48 * i, 3, glm::normalize(seen_along));
                 };
                 const glm::dvec3 colour = colourOf(plain, direction);
-                CHECK(glm::length(colour - colourOf(scene, glm::dmat3(placed) * direction)) < 1e-5 * glm::length(colour));
+                CHECK(glm::length(colour - colourOf(scene, glm::dmat3(placed) * direction)) <
+                      1e-5 * glm::length(colour));
             }
         }
     }
     // With uneven scales, the ellipsoids are stretched exactly.
     GltfText gltf = makeGltf(0);
-    gltf.nodes = R"([{"children":[1],"scale":[2,1,-0.25]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"translation":[1,2,3]}])";
+    gltf.nodes = R"([{"children":[1],"scale":[2,1,-0.25]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],)"
+                 R"("translation":[1,2,3]}])";
     const auto [notes, scene] = readScene(folder.write("stretched.glb", gltf.glb()));
     checkSays(notes.lines, "unevenly");
-    const glm::dmat4 inner = glm::translate(glm::dmat4(1.0), {1, 2, 3}) * glm::mat4_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
+    const glm::dmat4 inner =
+        glm::translate(glm::dmat4(1.0), {1, 2, 3}) * glm::mat4_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
     checkPlaced(scene, plain, scaled(2, 1, -0.25) * inner, 1e-5);
 }
 
-TEST_CASE("a node that lies far from 0, as those of 3D Tiles do, keeps its splats' detail: they count from an origin near them") {
+TEST_CASE(
+    "a node that lies far from 0, as those of 3D Tiles do, keeps its splats' detail: they count from an "
+    "origin near them") {
     const Folder folder;
     const Scene plain = loadScene(folder.write("plain.glb", makeGltf(9).glb()));
     const glm::dvec3 away(4'485'123.25, -1'870'456.5, 0.0);
     const glm::dquat turn = glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5)));
     GltfText gltf = makeGltf(9);
-    gltf.nodes = R"([{"mesh":0,"matrix":)" + quoted(glm::translate(glm::dmat4(1.0), away) * glm::mat4_cast(turn)) + "}]";
+    gltf.nodes = R"([{"mesh":0,"matrix":)" +
+                 quoted(glm::translate(glm::dmat4(1.0), away) * glm::mat4_cast(turn)) + "}]";
     LoadNotes notes;
     const Scene scene = loadScene(folder.write("far.glb", gltf.glb()), 0, &notes);
     CHECK(glm::distance(scene.origin, away) < 10.0);
@@ -146,10 +165,11 @@ TEST_CASE("a node that lies far from 0, as those of 3D Tiles do, keeps its splat
 
 TEST_CASE_FIXTURE(InFolder, "several primitives and nodes are one scene, of the highest degree among them") {
     GltfText gltf = makeGltf(9);
-    const std::string attributes = R"("POSITION":0,"KHR_gaussian_splatting:ROTATION":1,"KHR_gaussian_splatting:SCALE":2,)"
-                                   R"("KHR_gaussian_splatting:OPACITY":3,"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0":4)";
-    gltf.other_primitives =
-        R"(,{"mode":0,"attributes":{)" + attributes + R"(},"extensions":{"KHR_gaussian_splatting":)" + gltf.extension + "}}";
+    const std::string attributes =
+        R"("POSITION":0,"KHR_gaussian_splatting:ROTATION":1,"KHR_gaussian_splatting:SCALE":2,)"
+        R"("KHR_gaussian_splatting:OPACITY":3,"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0":4)";
+    gltf.other_primitives = R"(,{"mode":0,"attributes":{)" + attributes +
+                            R"(},"extensions":{"KHR_gaussian_splatting":)" + gltf.extension + "}}";
     gltf.nodes = R"([{"mesh":0},{"children":[2]},{"mesh":0,"translation":[10,0,0]},{"mesh":0}])";
     gltf.roots = "[1,0]";  // the last node is in no scene
     const Scene scene = loadScene(folder.write("several.glb", gltf.glb()));
@@ -160,7 +180,8 @@ TEST_CASE_FIXTURE(InFolder, "several primitives and nodes are one scene, of the 
     CHECK(scene.sh[3 * 12 + 1] == scene.sh[1]);
 }
 
-TEST_CASE_FIXTURE(InFolder, "what the extension's keys say is kept, and what they say that is not known is told") {
+TEST_CASE_FIXTURE(InFolder,
+                  "what the extension's keys say is kept, and what they say that is not known is told") {
     LoadNotes notes;
     const auto loadWith = [&](const std::string& keys) {
         GltfText gltf = makeGltf(0);
@@ -170,10 +191,12 @@ TEST_CASE_FIXTURE(InFolder, "what the extension's keys say is kept, and what the
     const std::string usual = R"("kernel":"ellipse","colorSpace":"srgb_rec709_display")";
     CHECK(loadWith(usual + R"(,"sortingMethod":"cameraDistance","projection":"perspective")").by_distance);
     CHECK(these(notes.axes, notes.colour_space, notes.lines.empty()) ==
-          these("x left, y up, z front; right-handed (glTF's own)", "srgb_rec709_display (named by the file)", true));
+          these("x left, y up, z front; right-handed (glTF's own)", "srgb_rec709_display (named by the file)",
+                true));
     CHECK_FALSE(loadWith(usual + R"(,"sortingMethod":"zDepth")").by_distance);
     CHECK(notes.lines.empty());
-    CHECK(loadWith(R"("kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye")").by_distance);
+    CHECK(loadWith(R"("kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye")")
+              .by_distance);
     CHECK(notes.lines.size() == 4);
     CHECK(loadWith("").size() == 3);
     CHECK(notes.lines.empty());
@@ -181,17 +204,22 @@ TEST_CASE_FIXTURE(InFolder, "what the extension's keys say is kept, and what the
     CHECK(light.is_linear);
     checkSays(notes.lines, "linear light");
     for (const bool as_ply : {true, false}) {
-        CHECK_THROWS_WITH_AS(as_ply ? writePly(light, folder.file("out.ply")) : writeSpz(light, folder.file("out.spz")),
-                             doctest::Contains("cannot hold colours of linear light"), Error);
+        CHECK_THROWS_WITH_AS(
+            as_ply ? writePly(light, folder.file("out.ply")) : writeSpz(light, folder.file("out.spz")),
+            doctest::Contains("cannot hold colours of linear light"), Error);
     }
     CHECK(folder.fileCount() == 1);
 }
 
-TEST_CASE_FIXTURE(InFolder, "of splats in two colour spaces the fewer are converted, and as many are blended as the display shows them") {
+TEST_CASE_FIXTURE(InFolder,
+                  "of splats in two colour spaces the fewer are converted, and as many are blended as the "
+                  "display shows them") {
     const std::string linear = R"({"kernel":"ellipse","colorSpace":"lin_rec709_display"})";
     for (const int linear_parts : {1, 2}) {
         GltfText gltf = makeGltf(0);
-        for (int k = 0; k < 3; ++k) { gltf.add(fmt::format("SH_DEGREE_1_COEF_{}", k), "VEC3", {.02, 0, .03, 0, .01, 0, .03, .02, .01}); }
+        for (int k = 0; k < 3; ++k) {
+            gltf.add(fmt::format("SH_DEGREE_1_COEF_{}", k), "VEC3", {.02, 0, .03, 0, .01, 0, .03, .02, .01});
+        }
         const Scene plain = loadScene(folder.write("plain.glb", gltf.glb()));
         const std::string json = gltf.json("");
         const std::size_t begin = json.find(R"({"mode":0)"), end = json.find("]}],\"buffers\"");
@@ -200,13 +228,19 @@ TEST_CASE_FIXTURE(InFolder, "of splats in two colour spaces the fewer are conver
         const auto [notes, scene] = readScene(folder.write("both.glb", gltf.glb()));
         REQUIRE(scene.size() == 3u + 3u * static_cast<std::size_t>(linear_parts));
         CHECK(scene.is_linear == (linear_parts == 2));
-        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "3 of "); }) == 1);
+        CHECK(std::ranges::count_if(notes.lines,
+                                    [](const std::string& line) { return contains(line, "3 of "); }) == 1);
         for (std::size_t i = 0; i < scene.size(); ++i) {
             const bool was_linear = i >= 3;
-            for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0.6, -0.8), glm::dvec3(0, -1, 0)}) {
-                const glm::dvec3 before = 0.5 + reference::evaluateHarmonics(plain.sh.data() + 12 * (i % 3), 1, direction);
-                const glm::dvec3 expected = was_linear == scene.is_linear ? before : was_linear ? encodedOf(before) : lightOf(before);
-                const glm::dvec3 colour = 0.5 + reference::evaluateHarmonics(scene.sh.data() + 12 * i, 1, direction);
+            for (const glm::dvec3 direction :
+                 {glm::dvec3(1, 0, 0), glm::dvec3(0, 0.6, -0.8), glm::dvec3(0, -1, 0)}) {
+                const glm::dvec3 before =
+                    0.5 + reference::evaluateHarmonics(plain.sh.data() + 12 * (i % 3), 1, direction);
+                const glm::dvec3 expected = was_linear == scene.is_linear ? before
+                                            : was_linear                  ? encodedOf(before)
+                                                                          : lightOf(before);
+                const glm::dvec3 colour =
+                    0.5 + reference::evaluateHarmonics(scene.sh.data() + 12 * i, 1, direction);
                 CHECK(glm::length(colour - expected) < (was_linear == scene.is_linear ? 1e-6 : 2e-3));
             }
         }
@@ -221,7 +255,9 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
     const auto [mixed, all] = readScene(path);
     CHECK(all.is_linear);
     CHECK(std::ranges::count_if(mixed.lines, [](const std::string& line) {
-              return contains(line, "1 of 15 splats have colours in srgb_rec709_display and were converted to lin_rec709_display");
+              return contains(line,
+                              "1 of 15 splats have colours in srgb_rec709_display and were converted to "
+                              "lin_rec709_display");
           }) == 1);
     CHECK(mixed.colour_space == "lin_rec709_display (named by the file)");
     const std::string glb = textIn(path);
@@ -235,14 +271,17 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
         CAPTURE(name);
         ++cases;
         document["scenes"][0]["nodes"] = {node};
-        const auto [notes, scene] = readScene(folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))));
+        const auto [notes, scene] = readScene(
+            folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))));
         REQUIRE(scene.size() == 1);
         for (std::size_t i = 0; i < 48; ++i) {
             const double stored = i < scene.sh.size() ? static_cast<double>(scene.sh[i]) : 0.0;
-            const double in_all = scene.is_linear ? stored : (lightOf(0.5 + kShConstant * stored) - 0.5) / kShConstant;
+            const double in_all =
+                scene.is_linear ? stored : (lightOf(0.5 + kShConstant * stored) - 0.5) / kShConstant;
             CHECK(all.sh[48 * node + i] == doctest::Approx(i < 3 ? in_all : stored).epsilon(1e-5));
         }
-        CHECK(these(scene.is_linear, scene.positions[0]) == these((name != "scale_f32"), glm::vec3(1.0f, 2.0f, 3.0f)));
+        CHECK(these(scene.is_linear, scene.positions[0]) ==
+              these((name != "scale_f32"), glm::vec3(1.0f, 2.0f, 3.0f)));
         // Half a turn about x, which changes no covariance along the axes. As in the draft, all scales are
         // logarithms.
         const std::map<std::string, glm::dvec3> scales{{"scale_f32", {0.2, -0.1, 0.7}},
@@ -256,21 +295,27 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
             const double expected = i % 4 == 0 ? std::exp(2.0 * logs[i / 3]) : 0.0;
             CHECK(covariance[i / 3][i % 3] == doctest::Approx(expected).epsilon(1e-5));
         }
-        const std::map<std::string, double> opacities{
-            {"opacity_f32", 0.75}, {"opacity_u8_norm", 64.0 / 255.0}, {"opacity_u16_norm", 16384.0 / 65535.0}};
-        CHECK(scene.opacities[0] == doctest::Approx(opacities.contains(name) ? opacities.at(name) : 0.25).epsilon(1e-6));
+        const std::map<std::string, double> opacities{{"opacity_f32", 0.75},
+                                                      {"opacity_u8_norm", 64.0 / 255.0},
+                                                      {"opacity_u16_norm", 16384.0 / 65535.0}};
+        CHECK(scene.opacities[0] ==
+              doctest::Approx(opacities.contains(name) ? opacities.at(name) : 0.25).epsilon(1e-6));
         CHECK(scene.sh_degree == (name.starts_with("sh_degree") ? name.back() - '0' : 0));
         for (std::size_t k = 0; k < scene.sh.size() / 3; ++k) {
             for (std::size_t channel = 0; channel < 3; ++channel) {
-                CHECK(scene.sh[3 * k + channel] == doctest::Approx(static_cast<double>(k) + 0.1 * static_cast<double>(channel + 1)));
+                CHECK(scene.sh[3 * k + channel] ==
+                      doctest::Approx(static_cast<double>(k) + 0.1 * static_cast<double>(channel + 1)));
             }
         }
-        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "logarithms"); }) == 1);
+        CHECK(std::ranges::count_if(
+                  notes.lines, [](const std::string& line) { return contains(line, "logarithms"); }) == 1);
     }
     CHECK(cases == 15);
 }
 
-TEST_CASE("an unknown kernel and colour space are drawn as what is known, and COLOR_0 stands in for harmonics" * needsSharedData()) {
+TEST_CASE(
+    "an unknown kernel and colour space are drawn as what is known, and COLOR_0 stands in for harmonics" *
+    needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
     const auto [notes, scene] = readScene((*data / "formats/khr_extensible_fallback.gltf").string());
@@ -284,7 +329,9 @@ TEST_CASE("an unknown kernel and colour space are drawn as what is known, and CO
     CHECK(contains(notes.lines[0] + notes.lines[1], "custom_space_display"));
 }
 
-TEST_CASE_FIXTURE(InFolder, "a small file whose nodes name many primitives many times is refused before it fills the memory") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "a small file whose nodes name many primitives many times is refused before it fills the memory") {
     const auto errorOf = [&](std::size_t nodes, std::size_t primitives) {
         GltfText gltf = makeGltf(0);
         gltf.nodes = R"([{"mesh":0})", gltf.roots = "[0";
@@ -297,49 +344,59 @@ TEST_CASE_FIXTURE(InFolder, "a small file whose nodes name many primitives many 
         return loadError(folder.write("a.glb", gltf.glb()));
     };
     CHECK(errorOf(512, 512).empty());
-    CHECK(contains(errorOf(513, 512), "a.glb: its nodes have 262656 primitives and more, expected at most 262144"));
+    CHECK(contains(errorOf(513, 512),
+                   "a.glb: its nodes have 262656 primitives and more, expected at most 262144"));
 }
 
 SCRIPT(gltf_format, "engine/files/gltf_format") {
     const Folder folder;
     const GltfText gltf = makeGltf(9);
-    runFaults(gltf.json(""),
-              [&](const std::string& json) { return loadError(folder.write("broken.glb", GltfText::makeGlb(json, gltf.binary()))); });
+    runFaults(gltf.json(""), [&](const std::string& json) {
+        return loadError(folder.write("broken.glb", GltfText::makeGlb(json, gltf.binary())));
+    });
 }
 
 TEST_CASE_FIXTURE(InFolder, "attributes, headers and buffers that do not fit are named") {
-    const auto glbError = [&](const std::string& bytes) { return loadError(folder.write("broken.glb", bytes)); };
+    const auto glbError = [&](const std::string& bytes) {
+        return loadError(folder.write("broken.glb", bytes));
+    };
     const std::string prefix = "KHR_gaussian_splatting:";
-    for (const auto& [left_out, message] : {std::pair("SCALE", "has no attribute KHR_gaussian_splatting:SCALE"),
-                                            std::pair("SH_DEGREE_1_COEF_1", "expected all of its degree"),
-                                            std::pair("SH_DEGREE_0_COEF_0", "degree 1, but none of degree 0")}) {
+    for (const auto& [left_out, message] :
+         {std::pair("SCALE", "has no attribute KHR_gaussian_splatting:SCALE"),
+          std::pair("SH_DEGREE_1_COEF_1", "expected all of its degree"),
+          std::pair("SH_DEGREE_0_COEF_0", "degree 1, but none of degree 0")}) {
         GltfText gltf = makeGltf(9);
         gltf.remove(prefix + left_out);
         CHECK(contains(glbError(gltf.glb()), message));
     }
-    const auto errorWithOpacity = [&](const char* type, const std::vector<double>& values, int component = kGltfFloat) {
+    const auto errorWithOpacity = [&](const char* type, const std::vector<double>& values,
+                                      int component = kGltfFloat) {
         GltfText gltf = makeGltf(9);
         gltf.add("OPACITY", type, values, component);
         return glbError(gltf.glb());
     };
-    CHECK(contains(errorWithOpacity("SCALAR", {1, 2, 3}, kGltfUint8), "holds integers, expected floats or normalized"));
+    CHECK(contains(errorWithOpacity("SCALAR", {1, 2, 3}, kGltfUint8),
+                   "holds integers, expected floats or normalized"));
     CHECK(contains(errorWithOpacity("VEC3", {1, 2, 3}), "has 3 components a splat, expected 1"));
     CHECK(contains(errorWithOpacity("SCALAR", {1, 2}), "has 3 positions and 2 values"));
 
     const GltfText gltf = makeGltf(9);
     const std::string json = gltf.json("");
     CHECK(contains(glbError(gltf.glb().substr(0, 15)), "expected a GLB's header of 20"));
-    CHECK(contains(glbError(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))), "version 1, expected 2"));
-    std::vector<std::pair<std::string, std::string>> uris{{"gone.bin", "gone.bin: no such file"},
-                                                          {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"},
-                                                          {"data:;base64,AAA", "buffers[0]: uri begins with 'data:;base64,AAA'"},
-                                                          {"data:;base64,A*AA", "buffers[0]: uri begins with"},
-                                                          {"data:;base64,AAA=", "byteLength is"}};
+    CHECK(contains(glbError(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))),
+                   "version 1, expected 2"));
+    std::vector<std::pair<std::string, std::string>> uris{
+        {"gone.bin", "gone.bin: no such file"},
+        {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"},
+        {"data:;base64,AAA", "buffers[0]: uri begins with 'data:;base64,AAA'"},
+        {"data:;base64,A*AA", "buffers[0]: uri begins with"},
+        {"data:;base64,AAA=", "byteLength is"}};
     for (const char* uri : {"../x.bin", "/etc/passwd", "a%2", "http://a/b", ""}) {
         uris.emplace_back(uri, "expected a path within the folder");
     }
     for (const auto& [uri, message] : uris) {
-        CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))), message));
+        CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))),
+                       message));
     }
     CHECK(contains(loadError(folder.write("out.gltf", json)), "buffers[0]: has no uri"));
     CHECK(contains(loadError(folder.write("long.gltf", json + std::string(std::size_t{32} << 20, ' '))),

@@ -24,7 +24,8 @@ struct Target {
 };
 
 Target partOf(Target target, std::size_t begin, std::size_t end = std::string::npos) {
-    const std::string before = target.good.substr(0, begin), behind = target.good.substr(std::min(end, target.good.size()));
+    const std::string before = target.good.substr(0, begin),
+                      behind = target.good.substr(std::min(end, target.good.size()));
     target.good = target.good.substr(begin, end - begin);
     target.wrap = [before, behind](const std::string& bytes) { return before + bytes + behind; };
     target.must_be_whole = target.must_be_whole && behind.empty();
@@ -33,28 +34,33 @@ Target partOf(Target target, std::size_t begin, std::size_t end = std::string::n
 
 void checkWhole(const Scene& scene, std::size_t most_splats) {
     const std::size_t splats = scene.size();
-    bool whole = splats <= most_splats && scene.rotations.size() == splats && scene.scales.size() == splats &&
-                 scene.opacities.size() == splats &&
-                 scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+    bool whole =
+        splats <= most_splats && scene.rotations.size() == splats && scene.scales.size() == splats &&
+        scene.opacities.size() == splats &&
+        scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
     for (std::size_t i = 0; whole && i < splats; ++i) {
         const glm::vec3& p = scene.positions[i];
-        whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(scene.scales[i].x) &&
-                std::isfinite(scene.scales[i].y) && scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
-                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f && scene.opacities[i] <= 1.0f;
+        whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) &&
+                std::isfinite(scene.scales[i].x) && std::isfinite(scene.scales[i].y) &&
+                scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
+                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f &&
+                scene.opacities[i] <= 1.0f;
     }
     for (const float value : scene.sh) { whole = whole && std::isfinite(value); }
     if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
 }
 
 // One in `stride` of the possible breaks is tried; more than one in `share` of all must be refused.
-void attack(const Folder& folder, const std::vector<Target>& targets, std::size_t stride, std::size_t share, long most_mebibytes) {
+void attack(const Folder& folder, const std::vector<Target>& targets, std::size_t stride, std::size_t share,
+            long most_mebibytes) {
     std::size_t inputs = 0, refused = 0;
     for (const Target& target : targets) {
         (void)folder.write(target.file, target.wrap(target.good));
         CHECK_MESSAGE(loadError(folder.file(target.source)).empty(), target.name);
         // A folder, for tests/fuzz/run.sh --keep.
         if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {
-            std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary) << target.wrap(target.good);
+            std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary)
+                << target.wrap(target.good);
         }
         Tally tally;
         // A long file is cut at fewer lengths.
@@ -62,7 +68,8 @@ void attack(const Folder& folder, const std::vector<Target>& targets, std::size_
         const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
             if (count++ % step != 0) { return; }
             (void)folder.write(target.file, target.wrap(bytes));
-            tally.attempt(target.name + ", " + what, [&] { checkWhole(loadScene(folder.file(target.source)), target.most_splats); });
+            tally.attempt(target.name + ", " + what,
+                          [&] { checkWhole(loadScene(folder.file(target.source)), target.most_splats); });
         };
         truncate(target.good, attempt);
         if (target.must_be_whole) { CHECK_MESSAGE(tally.read == 0, target.name); }
@@ -72,7 +79,8 @@ void attack(const Folder& folder, const std::vector<Target>& targets, std::size_
         replaceNumbers(target.good, target.numbers, attempt);
         shuffleLines(target.good, target.lines, attempt);
         for (const std::string& bytes : target.more) { count = 0, attempt("one more", bytes); }
-        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", target.name, tally.inputs, tally.read, tally.refused));
+        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", target.name, tally.inputs,
+                            tally.read, tally.refused));
         inputs += tally.inputs, refused += tally.refused;
     }
     CHECK(refused > inputs / share);
@@ -85,16 +93,19 @@ std::vector<Target> sceneTargets() {
         PlyText ply = makePly(9, encoding == Encoding::kLittle);
         ply.encoding = encoding;
         ply.header_before = "element strip 1\nproperty list uchar short index\n";
-        for (const auto& [type, value] : {std::pair("uchar", 2.0), std::pair("short", 1.0), std::pair("short", 2.0)}) {
+        for (const auto& [type, value] :
+             {std::pair("uchar", 2.0), std::pair("short", 1.0), std::pair("short", 2.0)}) {
             appendTyped(ply.data_before, type, value, encoding);
         }
         if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
         const std::string good = ply.bytes();
         const std::size_t end = good.find("end_header");
-        targets.push_back({fmt::format("PLY {}", static_cast<int>(encoding)), good, 1000, end + 200, end + 12});
+        targets.push_back(
+            {fmt::format("PLY {}", static_cast<int>(encoding)), good, 1000, end + 200, end + 12});
     }
     const std::string packed = makeCompressedPly();
-    targets.push_back({"compressed PLY", packed, 1500, packed.find("end_header"), packed.find("end_header") + 12});
+    targets.push_back(
+        {"compressed PLY", packed, 1500, packed.find("end_header"), packed.find("end_header") + 12});
     targets.push_back({.name = ".splat", .good = makeSplatFile(), .must_be_whole = false});
     for (const int level : {0, 1, 2}) {
         KsplatText text;
@@ -102,7 +113,9 @@ std::vector<Target> sceneTargets() {
         text.degrees = {1, 2};
         // Most of a header is empty, so the rest is attacked.
         const Target whole{.name = fmt::format(".ksplat {}", level), .good = text.bytes()};
-        for (const std::size_t begin : {0, 4096, 4096 + 1024}) { targets.push_back(partOf(whole, begin, begin + 44)); }
+        for (const std::size_t begin : {0, 4096, 4096 + 1024}) {
+            targets.push_back(partOf(whole, begin, begin + 44));
+        }
         targets.push_back(partOf(whole, 4096 + 2048));
         targets.back().changes = 200;
     }
@@ -122,23 +135,29 @@ std::vector<Target> sceneTargets() {
                        .must_be_whole = false,
                        .wrap = [spz](const std::string& records) { return makeSpzContainer(spz, records); }});
     GltfText gltf = makeGltf(9);
-    gltf.nodes = R"([{"children":[1,2]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3]},{"mesh":0,"translation":[1,2,3]}])";
+    gltf.nodes = R"([{"children":[1,2]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3]},{"mesh":0,)"
+                 R"("translation":[1,2,3]}])";
     gltf.other_primitives = R"(,{"mode":4,"attributes":{"POSITION":0}})";
     const std::string json = gltf.json(""), embedded = gltf.embedded();
     targets.push_back({"GLB", gltf.glb(), 2000});
-    targets.push_back({.name = "JSON of a GLB", .good = json, .numbers = json.size(), .wrap = [gltf](const std::string& text) {
-                           return GltfText::makeGlb(text, gltf.binary());
-                       }});
+    targets.push_back(
+        {.name = "JSON of a GLB",
+         .good = json,
+         .numbers = json.size(),
+         .wrap = [gltf](const std::string& text) { return GltfText::makeGlb(text, gltf.binary()); }});
     targets.push_back({.name = "glTF", .good = embedded});
     targets.back().more = {
         R"({"asset":)" + std::string(100'000, '['),
-        replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)")};
+        replaced(embedded, R"("nodes":[)",
+                 R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)")};
     return targets;
 }
 
 constexpr std::size_t kFew = kSanitized ? 1 : 7;  // shares no divisor with the number of breaks of any kind
 
-TEST_CASE("broken files of every format but SOG, some of them") { attack(Folder(), sceneTargets(), kFew, 4, 512); }
+TEST_CASE("broken files of every format but SOG, some of them") {
+    attack(Folder(), sceneTargets(), kFew, 4, 512);
+}
 TEST_CASE("broken files of every format but SOG" * nightly()) { attack(Folder(), sceneTargets(), 1, 4, 512); }
 
 #ifdef BINOSPLAT_SOG
@@ -158,15 +177,16 @@ std::vector<Target> sogTargets(const Folder& folder) {
         const SogText files = withShortText(makeSog(version));
         const std::string good = files.at("meta.json"), name = fmt::format("sog{}", version);
         (void)writeSogFolder(folder, name, files);
-        targets.push_back({.name = fmt::format("meta.json of version {}", version),
-                           .good = good,
-                           .changes = 800,
-                           .numbers = good.size(),
-                           .file = name + "/meta.json",
-                           .source = name,
-                           .most_splats = 9,
-                           .more = {std::string(1'000'000, '['),
-                                    R"({"version":2,"count":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
+        targets.push_back(
+            {.name = fmt::format("meta.json of version {}", version),
+             .good = good,
+             .changes = 800,
+             .numbers = good.size(),
+             .file = name + "/meta.json",
+             .source = name,
+             .most_splats = 9,
+             .more = {std::string(1'000'000, '['), R"({"version":2,"count":)" + std::string(100'000, '[') +
+                                                       std::string(100'000, ']') + "}"}});
     }
     const std::string levels = makeLodMeta();
     (void)writeStreamed(folder, "streamed", levels);
@@ -178,7 +198,8 @@ std::vector<Target> sogTargets(const Folder& folder) {
          .file = "streamed/lod-meta.json",
          .source = "streamed",
          .most_splats = 32,  // four chunks of them
-         .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
+         .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') +
+                                                   std::string(100'000, ']') + "}"}});
     for (const std::string picture : {"l.webp", "n.webp", "q.webp", "p.webp"}) {
         (void)writeSogFolder(folder, picture, makeSog());
         targets.push_back({.name = picture,
@@ -216,7 +237,8 @@ std::vector<Target> sogTargets(const Folder& folder) {
     std::filesystem::create_directories(folder.file("bundles"));
     std::string of_bundles = levels;
     for (const char* chunk : {"a", "b", "c", "env"}) {
-        of_bundles = replaced(of_bundles, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
+        of_bundles =
+            replaced(of_bundles, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
         (void)folder.write(fmt::format("bundles/{}.sog", chunk), written);
     }
     (void)folder.write("bundles/lod-meta.json", of_bundles);

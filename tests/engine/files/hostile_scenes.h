@@ -22,7 +22,10 @@ struct CompressedPly {
             if (part == "colour" && !has_colour_bounds) { continue; }
             for (const char* end : {"min", "max"}) {
                 for (const std::string axis : {"x", "y", "z"}) {
-                    const std::string name = part != "colour" ? part + axis : axis == "x" ? "r" : axis == "y" ? "g" : "b";
+                    const std::string name = part != "colour" ? part + axis
+                                             : axis == "x"    ? "r"
+                                             : axis == "y"    ? "g"
+                                                              : "b";
                     ply.header_before += fmt::format("property float {}_{}\n", end, name);
                 }
             }
@@ -30,28 +33,39 @@ struct CompressedPly {
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
             const double x = static_cast<double>(chunk);
             const double bounds[] = {x, -2, 4, x + 1, 2, 8, -6, -5, -4, -2, -1, 0, -0.5, 0, 0, 1.5, 1, 2};
-            for (int i = 0; i < (has_colour_bounds ? 18 : 12); ++i) { appendTyped(ply.data_before, "float", bounds[i], Encoding::kLittle); }
+            for (int i = 0; i < (has_colour_bounds ? 18 : 12); ++i) {
+                appendTyped(ply.data_before, "float", bounds[i], Encoding::kLittle);
+            }
         }
-        for (const auto& [name, word] : {std::pair("packed_position", position), std::pair("packed_rotation", rotation),
-                                         std::pair("packed_scale", scale), std::pair("packed_color", colour)}) {
+        for (const auto& [name, word] :
+             {std::pair("packed_position", position), std::pair("packed_rotation", rotation),
+              std::pair("packed_scale", scale), std::pair("packed_color", colour)}) {
             ply.columns.push_back({name, "uint", std::vector<double>(splats, word)});
         }
         if (rest.empty()) { return ply.bytes(); }
         ply.header_after = fmt::format("element sh {}\n", splats);
-        for (std::size_t i = 0; i < rest.size(); ++i) { ply.header_after += fmt::format("property uchar f_rest_{}\n", i); }
-        for (std::size_t splat = 0; splat < splats; ++splat) { ply.data_after.append(rest.begin(), rest.end()); }
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            ply.header_after += fmt::format("property uchar f_rest_{}\n", i);
+        }
+        for (std::size_t splat = 0; splat < splats; ++splat) {
+            ply.data_after.append(rest.begin(), rest.end());
+        }
         return ply.bytes();
     }
 };
 
 // Four splats in one chunk, with SH.
 inline std::string makeCompressedPly() {
-    return CompressedPly{
-        .splats = 4, .position = 2863311530u, .scale = 305419896u, .colour = 0xff8040f0u, .rest = std::vector<int>(9, 0x55)}
+    return CompressedPly{.splats = 4,
+                         .position = 2863311530u,
+                         .scale = 305419896u,
+                         .colour = 0xff8040f0u,
+                         .rest = std::vector<int>(9, 0x55)}
         .bytes();
 }
 
-inline std::string splatRow(const glm::vec3& position, const glm::vec3& scale, const std::array<int, 8>& colour_and_rotation) {
+inline std::string splatRow(const glm::vec3& position, const glm::vec3& scale,
+                            const std::array<int, 8>& colour_and_rotation) {
     std::string row;
     for (const glm::vec3& values : {position, scale}) {
         for (int axis = 0; axis < 3; ++axis) { appendTyped(row, "float", values[axis], Encoding::kLittle); }
@@ -62,7 +76,8 @@ inline std::string splatRow(const glm::vec3& position, const glm::vec3& scale, c
 inline std::string makeSplatFile() {
     std::string bytes;
     for (int i = 0; i < 6; ++i) {
-        bytes += splatRow({i, -2.0f, 0.5f}, {0.1f, 0.2f, 0.01f}, {0x10, 0x80, 0xf0, 0xff, 0x80, 0xff, 0x80, 0x80});
+        bytes +=
+            splatRow({i, -2.0f, 0.5f}, {0.1f, 0.2f, 0.01f}, {0x10, 0x80, 0xf0, 0xff, 0x80, 0xff, 0x80, 0x80});
     }
     return bytes;
 }

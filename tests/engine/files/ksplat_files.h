@@ -18,7 +18,9 @@ struct KsplatText {
     static double coordinate(int section, int i, int axis) {
         return bucketCentre(section, i / 2, axis) + 5.0 * (1000.0 * i - 2000.0 * axis) / 32767.0;
     }
-    static double bucketCentre(int section, int bucket, int axis) { return 10.0 * section + 4.0 * bucket - 8.0 * axis; }
+    static double bucketCentre(int section, int bucket, int axis) {
+        return 10.0 * section + 4.0 * bucket - 8.0 * axis;
+    }
     static double scale(int i, int axis) { return 0.25 * (i + 1) * (axis + 1); }
     static double harmonic(int i, int k, int channel) { return (i + 1) * 0.25 - 0.125 * k + 0.5 * channel; }
 
@@ -37,7 +39,8 @@ struct KsplatText {
         set(header, 36, "float", least_harmonic), set(header, 40, "float", most_harmonic);
         for (std::size_t section = 0; section < degrees.size(); ++section) {
             std::string own(1024, '\0');
-            set(own, 0, "uint", kSplats), set(own, 4, "uint", kSplats), set(own, 8, "uint", 2), set(own, 12, "uint", 3);
+            set(own, 0, "uint", kSplats), set(own, 4, "uint", kSplats), set(own, 8, "uint", 2),
+                set(own, 12, "uint", 3);
             set(own, 16, "float", 10.0), set(own, 20, "ushort", 12), set(own, 24, "uint", 32767);
             set(own, 32, "uint", 2), set(own, 36, "uint", 1), set(own, 40, "ushort", degrees[section]);
             headers += own;
@@ -51,7 +54,9 @@ private:
         std::string data;
         appendTyped(data, "uint", 1, Encoding::kLittle);  // splats in the last bucket
         for (int bucket = 0; bucket < 3; ++bucket) {
-            for (int axis = 0; axis < 3; ++axis) { appendTyped(data, "float", bucketCentre(section, bucket, axis), Encoding::kLittle); }
+            for (int axis = 0; axis < 3; ++axis) {
+                appendTyped(data, "float", bucketCentre(section, bucket, axis), Encoding::kLittle);
+            }
         }
         const auto number = [&](double value) {
             if (level == 0) { return appendTyped(data, "float", value, Encoding::kLittle); }
@@ -63,13 +68,17 @@ private:
                 if (level == 0) {
                     number(place);
                 } else {
-                    appendTyped(data, "ushort", std::round((place - bucketCentre(section, i / 2, axis)) * 32767.0 / 5.0) + 32767.0,
-                                Encoding::kLittle);
+                    appendTyped(
+                        data, "ushort",
+                        std::round((place - bucketCentre(section, i / 2, axis)) * 32767.0 / 5.0) + 32767.0,
+                        Encoding::kLittle);
                 }
             }
             for (int axis = 0; axis < 3; ++axis) { number(scale(i, axis)); }
             for (const double part : {0.5, -0.5, 0.5, i == 0 ? -0.5 : 0.5}) { number(part); }
-            for (const int byte : {51 * i, 255 - 51 * i, 102, 255 - 51 * i}) { data += static_cast<char>(byte); }
+            for (const int byte : {51 * i, 255 - 51 * i, 102, 255 - 51 * i}) {
+                data += static_cast<char>(byte);
+            }
             const int degree = degrees[static_cast<std::size_t>(section)];
             for (int band = 1; band <= degree; ++band) {
                 for (int channel = 0; channel < 3; ++channel) {

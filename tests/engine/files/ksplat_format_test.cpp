@@ -9,10 +9,12 @@ void checkContents(const Scene& scene, const KsplatText& text, int sh_degree) {
     REQUIRE(scene.sh_degree == sh_degree);
     const auto coefficients = static_cast<std::size_t>(shCoefficientCount(sh_degree));
     for (std::size_t splat = 0; splat < scene.size(); ++splat) {
-        const int section = static_cast<int>(splat) / KsplatText::kSplats, i = static_cast<int>(splat) % KsplatText::kSplats;
+        const int section = static_cast<int>(splat) / KsplatText::kSplats,
+                  i = static_cast<int>(splat) % KsplatText::kSplats;
         CAPTURE(splat);
         for (int axis = 0; axis < 3; ++axis) {
-            CHECK(scene.positions[splat][axis] == doctest::Approx(KsplatText::coordinate(section, i, axis)).epsilon(1e-5));
+            CHECK(scene.positions[splat][axis] ==
+                  doctest::Approx(KsplatText::coordinate(section, i, axis)).epsilon(1e-5));
         }
         // The first of three growing scales becomes the last, and the others move up.
         CHECK(scene.scales[splat].x == doctest::Approx(KsplatText::scale(i, 1)));
@@ -26,16 +28,21 @@ void checkContents(const Scene& scene, const KsplatText& text, int sh_degree) {
             const float* sh = scene.sh.data() + 3 * splat * coefficients + channel;
             CHECK(0.5 + 0.28209479177387814 * static_cast<double>(sh[0]) == doctest::Approx(shown[channel]));
             for (std::size_t k = 1; k < coefficients; ++k) {
-                const bool has_it = k < static_cast<std::size_t>(shCoefficientCount(text.degrees[static_cast<std::size_t>(section)]));
-                double expected = has_it ? KsplatText::harmonic(i, static_cast<int>(k), static_cast<int>(channel)) : 0.0;
+                const bool has_it = k < static_cast<std::size_t>(shCoefficientCount(
+                                            text.degrees[static_cast<std::size_t>(section)]));
+                double expected =
+                    has_it ? KsplatText::harmonic(i, static_cast<int>(k), static_cast<int>(channel)) : 0.0;
                 if (text.level == 2 && has_it) { expected = std::clamp(expected, -2.0, 2.0); }
-                CHECK(std::abs(static_cast<double>(sh[3 * k]) - expected) <= (text.level == 2 ? 4.0 / 255.0 * 0.51 : 1e-5));
+                CHECK(std::abs(static_cast<double>(sh[3 * k]) - expected) <=
+                      (text.level == 2 ? 4.0 / 255.0 * 0.51 : 1e-5));
             }
         }
     }
 }
 
-TEST_CASE("a .ksplat of each level gives what its bytes mean: sections of each degree, and room that is not used is passed over") {
+TEST_CASE(
+    "a .ksplat of each level gives what its bytes mean: sections of each degree, and room that is not used "
+    "is passed over") {
     const Folder folder;
     for (const int level : {0, 1, 2}) {
         for (const std::vector<int>& degrees : {std::vector<int>{0}, {1}, {2}, {0, 2, 1}}) {
@@ -44,7 +51,8 @@ TEST_CASE("a .ksplat of each level gives what its bytes mean: sections of each d
             text.level = level;
             text.degrees = degrees;
             LoadNotes notes;
-            checkContents(loadScene(folder.write("named otherwise", text.bytes()), 0, &notes), text, *std::ranges::max_element(degrees));
+            checkContents(loadScene(folder.write("named otherwise", text.bytes()), 0, &notes), text,
+                          *std::ranges::max_element(degrees));
             CHECK(these(notes.lines.empty(), notes.three_scales) == these(true, true));
             if (degrees.size() == 1) { continue; }
             std::string shorter = text.bytes();
@@ -71,7 +79,9 @@ TEST_CASE("the same four splats as .splat and as .ksplat are the same scene" * n
     REQUIRE(scene.size() == 4);
     CHECK(these(scene.positions, scene.scales, scene.thicknesses, scene.opacities, scene.sh) ==
           these(plain.positions, plain.scales, plain.thicknesses, plain.opacities, plain.sh));
-    for (std::size_t i = 0; i < 4; ++i) { CHECK(glm::length(scene.rotations[i] - plain.rotations[i]) < 1e-2f); }
+    for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(glm::length(scene.rotations[i] - plain.rotations[i]) < 1e-2f);
+    }
 }
 
 TEST_CASE_FIXTURE(InFolder, "a .ksplat that does not fit is named") {
@@ -93,7 +103,8 @@ TEST_CASE_FIXTURE(InFolder, "a .ksplat that does not fit is named") {
     for (const std::size_t length : {24u, 44u, 4095u, 4096u, 5119u, 5120u, 5130u}) {
         CHECK(contains(loadError(folder.write("cut.ksplat", good.substr(0, length))), "cut.ksplat: "));
     }
-    CHECK(contains(loadError(folder.write("cut.ksplat", good.substr(0, good.size() - 1))), "bytes are left of"));
+    CHECK(contains(loadError(folder.write("cut.ksplat", good.substr(0, good.size() - 1))),
+                   "bytes are left of"));
 }
 
 }  // SUITE(ksplat_format)

@@ -12,25 +12,30 @@ TEST_CASE("a scene within gzip is the scene itself, in one stream or several") {
     const Folder folder;
     const std::string ply = makePly(9).bytes();
     const Scene plain = loadScene(folder.write("plain.ply", ply));
-    for (const std::string& packed :
-         {gzip(ply), gzip(ply.substr(0, 100)) + gzip(ply.substr(100)), gzip(ply) + gzip(""), gzip(ply) + std::string(100'000, '\0')}) {
+    for (const std::string& packed : {gzip(ply), gzip(ply.substr(0, 100)) + gzip(ply.substr(100)),
+                                      gzip(ply) + gzip(""), gzip(ply) + std::string(100'000, '\0')}) {
         LoadNotes notes;
         const Scene scene = loadScene(folder.write("a.ply.gz", packed), 0, &notes);
         checkSameScene(plain, scene);
         CHECK(scene.name == folder.file("a.ply.gz"));
         CHECK(notes.lines.empty());
         CHECK(formatOfFile(folder.file("a.ply.gz")) == formatOfFile(folder.file("plain.ply")));
-        checkProgress(3, [&](const Progress& progress) { (void)loadScene(folder.file("a.ply.gz"), 0, nullptr, progress); });
+        checkProgress(3, [&](const Progress& progress) {
+            (void)loadScene(folder.file("a.ply.gz"), 0, nullptr, progress);
+        });
     }
     const auto errorOf = [&](const std::string& bytes) { return loadError(folder.write("b.gz", bytes)); };
     CHECK(contains(errorOf(gzip(ply).substr(0, 300)), "b.gz: ends within its gzip stream"));
     CHECK(contains(errorOf(gzip(ply) + "more"), "b.gz: broken gzip stream"));
     CHECK(contains(errorOf(gzip(gzip(ply))), "b.gz: is packed twice"));
-    CHECK(contains(errorOf(gzip(std::string(5'000'000, ' '))), "expected at most 256 times as many as packed"));
+    CHECK(
+        contains(errorOf(gzip(std::string(5'000'000, ' '))), "expected at most 256 times as many as packed"));
     CHECK(contains(errorOf(gzip("no scene")), "b.gz: not a scene file of a known format"));
 }
 
-TEST_CASE("a folder's scene is found by names and by the first 64 KiB of what is packed: what lies behind them is not unpacked") {
+TEST_CASE(
+    "a folder's scene is found by names and by the first 64 KiB of what is packed: what lies behind them is "
+    "not unpacked") {
     const Folder folder;
     PlyText large = makePly();
     std::mt19937 random(1);
@@ -43,7 +48,8 @@ TEST_CASE("a folder's scene is found by names and by the first 64 KiB of what is
     std::filesystem::create_directory(folder.file("in"));
     const std::string format = formatOfFile(folder.write("in/a.ply", ply));
     CHECK(formatOfFile(folder.write("a.ply.gz", cut)) == format);
-    CHECK(formatOfFile(folder.write("a.ply.gz", gzip(ply.substr(0, 100)) + gzip(ply.substr(100)).substr(0, cut.size()))) == format);
+    CHECK(formatOfFile(folder.write(
+              "a.ply.gz", gzip(ply.substr(0, 100)) + gzip(ply.substr(100)).substr(0, cut.size()))) == format);
 #ifdef BINOSPLAT_SOG
     for (const bool deflated : {false, true}) {
         std::string broken = makeZip(SogText{{"a.ply", ply}}, deflated);
@@ -78,7 +84,8 @@ TEST_CASE("a scene is not unpacked into more room than there is, and leaves noth
             CHECK(std::filesystem::is_empty(place) == (looks == 0));
             return room.at(looks++);
         }};
-        const std::string error = errorOf([&] { (void)unpackScene(std::make_unique<InputFile>(folder.file(name)), {}, how); });
+        const std::string error =
+            errorOf([&] { (void)unpackScene(std::make_unique<InputFile>(folder.file(name)), {}, how); });
         CHECK(looks == room.size());
         CHECK_FALSE(std::filesystem::exists(used));
         return error;
@@ -99,23 +106,27 @@ TEST_CASE("a scene is not unpacked into more room than there is, and leaves noth
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE("a zip archive with one scene in it is that scene; one with several, none or a password is told in a line") {
+TEST_CASE(
+    "a zip archive with one scene in it is that scene; one with several, none or a password is told in a "
+    "line") {
     const Folder folder;
     using Entries = std::vector<std::pair<std::string, std::string>>;
     const auto zip = [](const Entries& entries, bool deflated = false) { return makeZip(entries, deflated); };
     const std::string ply = makePly(9).bytes(), sog = makeZip(makeSog()), spz = gzip(makeSpz(3).bytes());
     const Scene plain = loadScene(folder.write("plain.ply", ply));
     for (const bool deflated : {false, true}) {
-        for (const Entries& entries :
-             {Entries{{"garden.ply", ply}}, Entries{{"a/", ""}, {"a/Garden.PLY", ply}, {"a/cameras.json", "[]"}},
-              Entries{{"without an extension", ply}}, Entries{{"__MACOSX/._a.ply", "x"}, {".b.ply", ""}, {"a.ply", ply}}}) {
+        for (const Entries& entries : {Entries{{"garden.ply", ply}},
+                                       Entries{{"a/", ""}, {"a/Garden.PLY", ply}, {"a/cameras.json", "[]"}},
+                                       Entries{{"without an extension", ply}},
+                                       Entries{{"__MACOSX/._a.ply", "x"}, {".b.ply", ""}, {"a.ply", ply}}}) {
             const Scene scene = loadScene(folder.write("a.zip", zip(entries, deflated)));
             checkSameScene(plain, scene);
             CHECK(scene.name.starts_with(folder.file("a.zip") + ": "));
         }
     }
     for (const auto& [name, bytes] : Entries{{"a.sog", sog}, {"a.spz", spz}}) {
-        checkSameScene(loadScene(folder.write(name, bytes)), loadScene(folder.write("a.zip", zip({{"in/" + name, bytes}}))));
+        checkSameScene(loadScene(folder.write(name, bytes)),
+                       loadScene(folder.write("a.zip", zip({{"in/" + name, bytes}}))));
     }
     std::string secret = zip({{"a.ply", ply}});
     for (const auto& [header, flags] : {std::pair("PK\x03\x04", 6u), std::pair("PK\x01\x02", 8u)}) {
@@ -124,17 +135,24 @@ TEST_CASE("a zip archive with one scene in it is that scene; one with several, n
     std::string broken = zip({{"a.ply", ply}});
     broken[broken.find("ply\n") + 300] ^= 1;
     const std::pair<std::string, std::string> faults[]{
-        {zip({{"a.ply", ply}, {"b.spz", spz}}), "b.zip: a zip archive with 2 scenes (a.ply, b.spz), expected one: unpack it and choose"},
-        {zip({{"1.ply", ply}, {"2.ply", ply}, {"3.ply", ply}, {"4.ply", ply}}), "with 4 scenes (1.ply, 2.ply, 3.ply, ...)"},
-        {zip({{"a.txt", "x"}, {"b.txt", "y"}}), "b.zip: a zip archive of 2 files without a scene or the meta.json of one"},
+        {zip({{"a.ply", ply}, {"b.spz", spz}}),
+         "b.zip: a zip archive with 2 scenes (a.ply, b.spz), expected one: unpack it and choose"},
+        {zip({{"1.ply", ply}, {"2.ply", ply}, {"3.ply", ply}, {"4.ply", ply}}),
+         "with 4 scenes (1.ply, 2.ply, 3.ply, ...)"},
+        {zip({{"a.txt", "x"}, {"b.txt", "y"}}),
+         "b.zip: a zip archive of 2 files without a scene or the meta.json of one"},
         {zip({}), "b.zip: a zip archive of 0 files without a scene"},
-        {zip({{"a/meta.json", "{}"}, {"lod-meta.json", "{}"}}), "b.zip: a streamed SOG scene in a zip archive, expected it unpacked"},
+        {zip({{"a/meta.json", "{}"}, {"lod-meta.json", "{}"}}),
+         "b.zip: a streamed SOG scene in a zip archive, expected it unpacked"},
         {secret, "b.zip: a.ply: is encrypted and asks for a password, expected an archive without one"},
         {broken, "b.zip: a.ply: cannot be read"},
         {zip({{"a.ply", ply}}).substr(0, 500), "b.zip: not a whole zip archive"},
         {zip({{"a.ply.gz", gzip(ply)}}), "b.zip: is packed twice"},
-        {zip({{"a.ply", std::string(5'000'000, ' ')}}, true), "expected at most 256 times as many as packed"}};
-    for (const auto& [bytes, message] : faults) { CHECK(contains(loadError(folder.write("b.zip", bytes)), message)); }
+        {zip({{"a.ply", std::string(5'000'000, ' ')}}, true),
+         "expected at most 256 times as many as packed"}};
+    for (const auto& [bytes, message] : faults) {
+        CHECK(contains(loadError(folder.write("b.zip", bytes)), message));
+    }
 }
 
 TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
@@ -143,21 +161,27 @@ TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
     const Scene whole = loadScene(folder.write("a.glb", makeGltf().glb()));
     for (const char* prefix : {"", "in/", "in\\"}) {
         for (const char* part : {"parts/a b.bin", "parts\\a b.bin"}) {
-            checkSameScene(whole, loadScene(folder.write("a.zip", makeZip(SogText{{"a.gltf", gltf}, {part, binary}}, true, prefix))));
+            checkSameScene(whole,
+                           loadScene(folder.write(
+                               "a.zip", makeZip(SogText{{"a.gltf", gltf}, {part, binary}}, true, prefix))));
         }
     }
     (void)folder.write("a.bin", binary);  // beside the archive, not in it
     const std::string beside = makeGltf().json(R"(,"uri":"a.bin")");
-    CHECK(contains(loadError(folder.write("a.zip", makeZip(SogText{{"in/a.gltf", beside}, {"a.bin", binary}}))),
-                   "a.zip: in/a.bin: not in the archive"));
-    CHECK(contains(loadError(folder.write("a.zip", makeZip(SogText{{"a.gltf", beside}, {"a.bin", binary.substr(1)}}))),
-                   fmt::format("{} bytes", binary.size() - 1)));
+    CHECK(
+        contains(loadError(folder.write("a.zip", makeZip(SogText{{"in/a.gltf", beside}, {"a.bin", binary}}))),
+                 "a.zip: in/a.bin: not in the archive"));
+    CHECK(contains(
+        loadError(folder.write("a.zip", makeZip(SogText{{"a.gltf", beside}, {"a.bin", binary.substr(1)}}))),
+        fmt::format("{} bytes", binary.size() - 1)));
     // A file that is named time and again, as in a hostile scene, is not unpacked endlessly.
     const auto naming = [&](int times) {
         std::string uri = R"(,"uri":"a.bin")";
         for (int i = 1; i < times; ++i) { uri += R"(},{"byteLength":4,"uri":"a.bin")"; }
         return loadError(folder.write(
-            "a.zip", makeZip(SogText{{"a.gltf", makeGltf().json(uri)}, {"a.bin", binary + std::string(300'000, '\0')}}, true)));
+            "a.zip",
+            makeZip(SogText{{"a.gltf", makeGltf().json(uri)}, {"a.bin", binary + std::string(300'000, '\0')}},
+                    true)));
     };
     CHECK(naming(1).empty());
     CHECK(contains(naming(4), "a.zip: the files that it names are longer than"));

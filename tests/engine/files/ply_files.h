@@ -11,7 +11,8 @@ namespace binosplat::test {
 // A folder for each test case, removed afterwards.
 class Folder {
 public:
-    Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
+    Folder()
+        : path_(std::filesystem::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
         std::filesystem::create_directories(path_);
     }
     ~Folder() { std::filesystem::remove_all(path_); }
@@ -25,7 +26,8 @@ public:
         return file(name);
     }
     [[nodiscard]] std::ptrdiff_t fileCount() const {
-        return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
+        return std::distance(std::filesystem::directory_iterator(path_),
+                             std::filesystem::directory_iterator());
     }
 
 private:
@@ -56,12 +58,14 @@ void appendValue(std::string& bytes, double value, bool big) {
 
 inline void appendTyped(std::string& bytes, const std::string& type, double value, Encoding encoding) {
     static const std::map<std::string, void (*)(std::string&, double, bool)> kTypes{
-        {"char", appendValue<std::int8_t>},     {"int8", appendValue<std::int8_t>},     {"uchar", appendValue<std::uint8_t>},
-        {"uint8", appendValue<std::uint8_t>},   {"short", appendValue<std::int16_t>},   {"int16", appendValue<std::int16_t>},
-        {"ushort", appendValue<std::uint16_t>}, {"uint16", appendValue<std::uint16_t>}, {"int", appendValue<std::int32_t>},
-        {"int32", appendValue<std::int32_t>},   {"uint", appendValue<std::uint32_t>},   {"uint32", appendValue<std::uint32_t>},
-        {"float", appendValue<float>},          {"float32", appendValue<float>},        {"double", appendValue<double>},
-        {"float64", appendValue<double>}};
+        {"char", appendValue<std::int8_t>},     {"int8", appendValue<std::int8_t>},
+        {"uchar", appendValue<std::uint8_t>},   {"uint8", appendValue<std::uint8_t>},
+        {"short", appendValue<std::int16_t>},   {"int16", appendValue<std::int16_t>},
+        {"ushort", appendValue<std::uint16_t>}, {"uint16", appendValue<std::uint16_t>},
+        {"int", appendValue<std::int32_t>},     {"int32", appendValue<std::int32_t>},
+        {"uint", appendValue<std::uint32_t>},   {"uint32", appendValue<std::uint32_t>},
+        {"float", appendValue<float>},          {"float32", appendValue<float>},
+        {"double", appendValue<double>},        {"float64", appendValue<double>}};
     if (encoding == Encoding::kAscii) {
         bytes += fmt::format("{} ", value);
     } else {
@@ -79,25 +83,29 @@ struct PlyText {
     [[nodiscard]] std::string bytes() const {
         const char* names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
         const std::size_t rows = columns.front().values.size();
-        std::string text =
-            "ply\nformat " + std::string(names[static_cast<int>(encoding)]) + " 1.0\ncomment made for a test\n" + header_before;
+        std::string text = "ply\nformat " + std::string(names[static_cast<int>(encoding)]) +
+                           " 1.0\ncomment made for a test\n" + header_before;
         text += fmt::format("element vertex {}\n", rows);
         for (const Column& column : columns) { text += "property " + column.type + " " + column.name + "\n"; }
         text += header_after + "end_header\n";
         if (line_break != "\n") {
-            for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += line_break.size()) {
+            for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;
+                 at += line_break.size()) {
                 text.replace(at, 1, line_break);
             }
         }
         text += data_before;
         for (std::size_t row = 0; row < rows; ++row) {
-            for (const Column& column : columns) { appendTyped(text, column.type, column.values[row], encoding); }
+            for (const Column& column : columns) {
+                appendTyped(text, column.type, column.values[row], encoding);
+            }
             if (encoding == Encoding::kAscii) { text += "\n"; }
         }
         return text + data_after;
     }
     Column& operator[](const std::string& name) {
-        const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == name; });
+        const auto found = std::find_if(columns.begin(), columns.end(),
+                                        [&](const Column& column) { return column.name == name; });
         REQUIRE(found != columns.end());
         return *found;
     }
@@ -109,7 +117,9 @@ struct PlyText {
 // Three plausible splats whose numbers are exact in float32.
 inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
     PlyText ply;
-    const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
+    const auto add = [&](const std::string& name, double a, double b, double c) {
+        ply.columns.push_back({name, "float", {a, b, c}});
+    };
     add("x", 1.0, 2.0, -3.0);
     add("y", 0.5, 0.25, 0.125);
     add("z", 4.0, 5.0, 6.0);
@@ -130,7 +140,9 @@ inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
 inline std::string loadError(const std::string& source, std::uint64_t splats = 0) {
     return errorOf([&] { (void)loadScene(source, splats); });
 }
-inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
+inline std::string loadError(const Folder& folder, const std::string& bytes) {
+    return loadError(folder.write("broken.ply", bytes));
+}
 
 // `action` reports progress from 0 to 1 at least this often, and stops when the callback throws.
 inline void checkProgress(std::size_t times, const std::function<void(const Progress&)>& action) {
@@ -150,7 +162,9 @@ inline void checkProgress(std::size_t times, const std::function<void(const Prog
 
 // A message with the backslashes that Windows writes in paths turned into slashes.
 inline std::string withSlashes(std::string text) {
-    if constexpr (std::filesystem::path::preferred_separator != '/') { std::replace(text.begin(), text.end(), '\\', '/'); }
+    if constexpr (std::filesystem::path::preferred_separator != '/') {
+        std::replace(text.begin(), text.end(), '\\', '/');
+    }
     return text;
 }
 inline bool contains(const std::string& text, const std::string& part) {
@@ -187,7 +201,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
 }
 
 // A script in which `> FROM => TO` reads `good` with FROM replaced by TO; `read` returns the error, if any.
-inline void runFaults(const std::string& good, const std::function<std::string(const std::string& broken)>& read) {
+inline void runFaults(const std::string& good,
+                      const std::function<std::string(const std::string& broken)>& read) {
     runScript({[&](const std::string& edit, const std::string&) {
         const std::string error = read(edited(good, edit));
         return Outcome{error.empty() ? 0 : 1, "", withSlashes(error) + "\n"};
@@ -198,7 +213,8 @@ inline void runFaults(const std::string& good, const std::function<std::string(c
 struct Fault {
     std::string from, to, message;
 };
-inline void checkFaults(const std::vector<Fault>& faults, const std::function<std::string(const Fault&)>& error_with) {
+inline void checkFaults(const std::vector<Fault>& faults,
+                        const std::function<std::string(const Fault&)>& error_with) {
     for (const Fault& fault : faults) {
         const std::string message = error_with(fault);
         CHECK_MESSAGE(contains(message, fault.message), fault.from, " -> ", fault.to, ": ", message);

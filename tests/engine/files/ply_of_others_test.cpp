@@ -15,10 +15,13 @@ TEST_CASE_FIXTURE(InFolder, "properties come in any order, of any type, among ot
             state = state * 1664525u + 1013904223u;
             std::swap(ply.columns[i - 1], ply.columns[state % i]);
         }
-        for (const char* name : {"x", "f_rest_3", "rot_1", "opacity"}) { ply[name].type = round % 2 == 0 ? "double" : "float64"; }
+        for (const char* name : {"x", "f_rest_3", "rot_1", "opacity"}) {
+            ply[name].type = round % 2 == 0 ? "double" : "float64";
+        }
         for (const auto& [name, type] :
-             {std::pair("f_rest_0", "short"), std::pair("f_rest_1", "uint16"), std::pair("f_rest_2", "int32"), std::pair("z", "uchar"),
-              std::pair("scale_0", "int8"), std::pair("rot_2", "char"), std::pair("rot_0", "uint")}) {
+             {std::pair("f_rest_0", "short"), std::pair("f_rest_1", "uint16"), std::pair("f_rest_2", "int32"),
+              std::pair("z", "uchar"), std::pair("scale_0", "int8"), std::pair("rot_2", "char"),
+              std::pair("rot_0", "uint")}) {
             ply[name].type = type;
         }
         ply.columns.insert(ply.columns.begin() + round, {"red", "uchar", {255.0, 0.0, 17.0}});
@@ -27,7 +30,9 @@ TEST_CASE_FIXTURE(InFolder, "properties come in any order, of any type, among ot
     }
 }
 
-TEST_CASE("other elements are passed over, with and without lists, before and after the splats, as are line breaks of Windows") {
+TEST_CASE(
+    "other elements are passed over, with and without lists, before and after the splats, as are line breaks "
+    "of Windows") {
     const Folder folder;
     const Scene expected = loadScene(folder.write("plain.ply", makePly().bytes()));
     for (const Encoding encoding : kEncodings) {
@@ -36,7 +41,8 @@ TEST_CASE("other elements are passed over, with and without lists, before and af
         checkSameScene(loadScene(folder.write("windows.ply", ply.bytes())), expected);
         ply.line_break = "\n";
         ply.header_before =
-            "element camera 2\nproperty float a\nproperty uchar b\nelement strip 2\nproperty list uchar int index\nproperty double "
+            "element camera 2\nproperty float a\nproperty uchar b\nelement strip 2\nproperty list uchar int "
+            "index\nproperty double "
             "w\nelement none 5\n";
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
         const std::string line_end = encoding == Encoding::kAscii ? "\n" : "";
@@ -65,15 +71,18 @@ TEST_CASE_FIXTURE(InFolder, "a comment names the vertical axis, and writing keep
                                         {"comment the Vertical axis: z\n", -1}}) {
         CAPTURE(comment);
         LoadNotes notes;
-        const Scene scene =
-            loadScene(folder.write("said.ply", replaced(makePly(0).bytes(), "comment made for a test\n", comment)), 0, &notes);
+        const Scene scene = loadScene(
+            folder.write("said.ply", replaced(makePly(0).bytes(), "comment made for a test\n", comment)), 0,
+            &notes);
         CHECK(scene.vertical_axis == axis);
         CHECK(writtenAndRead(folder, scene).vertical_axis == axis);
         CHECK(notes.axes == (axis < 0 ? "" : fmt::format("{} is vertical (named by the file)", "xyz"[axis])));
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "a PLY that looks as if its activations had been applied is loaded as usual, with one line that says so") {
+TEST_CASE_FIXTURE(InFolder,
+                  "a PLY that looks as if its activations had been applied is loaded as usual, with one line "
+                  "that says so") {
     for (const bool three_scales : {false, true}) {
         PlyText ply = makePly(0, three_scales);
         ply["opacity"].values = {0.0, 1.0, 0.5};
@@ -84,11 +93,14 @@ TEST_CASE_FIXTURE(InFolder, "a PLY that looks as if its activations had been app
         const auto linesOf = [&] {
             LoadNotes notes;
             CHECK(loadScene(folder.write("applied.ply", ply.bytes()), 0, &notes).size() == 700);
-            return std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "activations applied"); });
+            return std::ranges::count_if(
+                notes.lines, [](const std::string& line) { return contains(line, "activations applied"); });
         };
         CHECK(linesOf() == 1);
-        CHECK(loadScene(folder.file("applied.ply")).opacities[1] == doctest::Approx(1.0 / (1.0 + std::exp(-1.0))));
-        for (const auto& [name, usual] : {std::pair("opacity", 1.01), std::pair("opacity", -0.01), std::pair("scale_1", 0.0)}) {
+        CHECK(loadScene(folder.file("applied.ply")).opacities[1] ==
+              doctest::Approx(1.0 / (1.0 + std::exp(-1.0))));
+        for (const auto& [name, usual] :
+             {std::pair("opacity", 1.01), std::pair("opacity", -0.01), std::pair("scale_1", 0.0)}) {
             const double before = std::exchange(ply[name].values[650], usual);  // one splat in the last block
             CHECK(linesOf() == 0);
             ply[name].values[650] = before;
@@ -96,7 +108,8 @@ TEST_CASE_FIXTURE(InFolder, "a PLY that looks as if its activations had been app
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
+TEST_CASE_FIXTURE(InFolder,
+                  "a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
     LoadNotes notes;
     const Scene plain = loadScene(folder.write("plain.ply", makePly(45, true).bytes()));
     checkSameScene(loadScene(folder.write("marked.ply", "\xef\xbb\xbf" + makePly(45, true).bytes())), plain);
@@ -109,13 +122,15 @@ TEST_CASE_FIXTURE(InFolder, "a byte order mark, CloudCompare's names and harmoni
     PlyText larger = makePly(72, true);
     for (int i = 0; i < 72; ++i) {
         std::vector<double>& values = larger[fmt::format("f_rest_{}", i)].values;
-        values = i % 24 < 15 ? makePly(45)[fmt::format("f_rest_{}", i / 24 * 15 + i % 24)].values : std::vector<double>{kNan, 1.0, 2.0};
+        values = i % 24 < 15 ? makePly(45)[fmt::format("f_rest_{}", i / 24 * 15 + i % 24)].values
+                             : std::vector<double>{kNan, 1.0, 2.0};
     }
     checkSameScene(loadScene(folder.write("larger.ply", larger.bytes()), 0, &notes), plain);
     checkSays(notes.lines, "larger.ply: SH of degree 4 were left out, degree 3 is kept");
 }
 
-TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, and are written back to where they were") {
+TEST_CASE_FIXTURE(
+    InFolder, "positions of float64 far from 0 keep their detail, and are written back to where they were") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding, 9, true);
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "double"; }
@@ -127,10 +142,12 @@ TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, 
         checkSays(notes.lines, "count from 431250,-5412000,0");
         writePly(scene, folder.file("again.ply"));
         const Scene again = loadScene(folder.file("again.ply"));
-        CHECK(these(again.origin, again.rotations, again.sh) == these(scene.origin, scene.rotations, scene.sh));
+        CHECK(these(again.origin, again.rotations, again.sh) ==
+              these(scene.origin, scene.rotations, scene.sh));
         REQUIRE(again.size() == 3);
         for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec3 expected = glm::dvec3(ply["x"].values[i], ply["y"].values[i], ply["z"].values[i]) - scene.origin;
+            const glm::dvec3 expected =
+                glm::dvec3(ply["x"].values[i], ply["y"].values[i], ply["z"].values[i]) - scene.origin;
             CHECK(glm::distance(glm::dvec3(scene.positions[i]), expected) < 1e-7);
             CHECK(glm::distance(glm::dvec3(again.positions[i]), expected) < 1e-7);
         }
@@ -142,11 +159,13 @@ TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, 
         // A float32 in the file has already lost its detail, so it stays as it is.
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "float"; }
         const Scene near = loadScene(folder.write("float.ply", ply.bytes()));
-        CHECK(these(near.origin, near.positions[2]) == these(glm::dvec3(0.0), glm::vec3(431249.5f, -5412001.0f, 209.0f)));
+        CHECK(these(near.origin, near.positions[2]) ==
+              these(glm::dvec3(0.0), glm::vec3(431249.5f, -5412001.0f, 209.0f)));
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one moment is shown, and a note says which") {
+TEST_CASE_FIXTURE(InFolder,
+                  "of splats that move and fade the still of one moment is shown, and a note says which") {
     const auto load = [&](const PlyText& ply, const std::string& note) {
         const auto [notes, scene] = readScene(folder.write("moving.ply", ply.bytes()));
         checkSays(notes.lines, note);
@@ -154,22 +173,29 @@ TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one momen
     };
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding, 9, true);
-        const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
+        const auto add = [&](const std::string& name, double a, double b, double c) {
+            ply.columns.push_back({name, "float", {a, b, c}});
+        };
         add("trbf_center", 0.25, 0.5, 1.0);  // shown at the median time
         add("trbf_scale", std::log(0.25), 0.0, 0.0);
         add("motion_0", 2.0, 9.0, 4.0);  // linear along x, quadratic along z, cubic along y
         add("motion_5", 16.0, 9.0, 0.0);
         add("motion_7", 0.0, 9.0, 8.0);
         add("omega_1", 8.0, 9.0, 0.0);
-        const Scene scene =
-            load(ply, "(trbf_center, trbf_scale, motion_0, motion_5, motion_7, omega_1): shown as the still of one moment, 0.5");
-        const auto opacity = [](double logit, double seen) { return doctest::Approx(seen / (1.0 + std::exp(-logit))).epsilon(1e-5); };
-        CHECK(scene.positions == std::vector<glm::vec3>{{1.5f, 0.5f, 5.0f}, {2.0f, 0.25f, 5.0f}, {-5.0f, -0.875f, 6.0f}});
+        const Scene scene = load(ply,
+                                 "(trbf_center, trbf_scale, motion_0, motion_5, motion_7, omega_1): shown as "
+                                 "the still of one moment, 0.5");
+        const auto opacity = [](double logit, double seen) {
+            return doctest::Approx(seen / (1.0 + std::exp(-logit))).epsilon(1e-5);
+        };
+        CHECK(scene.positions ==
+              std::vector<glm::vec3>{{1.5f, 0.5f, 5.0f}, {2.0f, 0.25f, 5.0f}, {-5.0f, -0.875f, 6.0f}});
         CHECK(these(scene.opacities[0], scene.opacities[1], scene.opacities[2]) ==
               these(opacity(0.0, std::exp(-1.0)), opacity(2.0, 1.0), opacity(-2.0, std::exp(-0.25))));
         CHECK(scene.sh == loadScene(folder.write("still.ply", makeIn(encoding, 9, true).bytes())).sh);
         CHECK(scene.rotations[1] == loadScene(folder.file("still.ply")).rotations[1]);
-        CHECK(std::abs(glm::dot(scene.rotations[0], loadScene(folder.file("still.ply")).rotations[0])) == doctest::Approx(std::sqrt(0.5)));
+        CHECK(std::abs(glm::dot(scene.rotations[0], loadScene(folder.file("still.ply")).rotations[0])) ==
+              doctest::Approx(std::sqrt(0.5)));
     }
     PlyText fading = makePly();
     fading.columns.push_back({"t", "float", {0.0, 1.0, 3.0}});
@@ -180,16 +206,22 @@ TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one momen
     // Without harmonics, Spacetime Gaussians store colours, or their logits.
     PlyText coloured = makePly();
     coloured.columns.push_back({"trbf_center", "float", {0.0, 0.0, 0.0}});
-    const auto shown = [](const Scene& scene, std::size_t i) { return 0.5 + 0.28209479177387814 * double(scene.sh[i]); };
+    const auto shown = [](const Scene& scene, std::size_t i) {
+        return 0.5 + 0.28209479177387814 * double(scene.sh[i]);
+    };
     CHECK(shown(load(coloured, "(trbf_center): all"), 1) == doctest::Approx(0.25));
     coloured.columns.push_back({"f_dc_3", "float", {0.0, 0.0, 0.0}});
-    CHECK(shown(load(coloured, "; its colours lack what a network"), 4) == doctest::Approx(1.0 / (1.0 + std::exp(-0.5))));
+    CHECK(shown(load(coloured, "; its colours lack what a network"), 4) ==
+          doctest::Approx(1.0 / (1.0 + std::exp(-0.5))));
     PlyText unknown = makePly();
     unknown.columns.push_back({"motion_0", "float", {1.0, 2.0, 3.0}});
-    checkSameScene(load(unknown, "(motion_0): all are shown at once"), loadScene(folder.write("still.ply", makePly().bytes())));
+    checkSameScene(load(unknown, "(motion_0): all are shown at once"),
+                   loadScene(folder.write("still.ply", makePly().bytes())));
 }
 
-TEST_CASE_FIXTURE(InFolder, "a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply;
         ply.encoding = encoding;
@@ -197,7 +229,9 @@ TEST_CASE_FIXTURE(InFolder, "a point cloud or a mesh is named as what it is, wit
         const auto error = [&] { return loadError(folder.write("points3D.ply", ply.bytes())); };
         CHECK(contains(error(), "points3D.ply: a point cloud (2 points), not a splat scene"));
         for (const char* name : {"nx", "ny", "nz"}) { ply.columns.push_back({name, "float", {0.0, 1.0}}); }
-        for (const char* name : {"red", "green", "blue"}) { ply.columns.push_back({name, "uchar", {0.0, 255.0}}); }
+        for (const char* name : {"red", "green", "blue"}) {
+            ply.columns.push_back({name, "uchar", {0.0, 255.0}});
+        }
         CHECK(contains(error(), "a point cloud (2 points, with colours, with normals)"));
         CHECK(contains(error(), "point_cloud/iteration_N/point_cloud.ply"));
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";

@@ -8,26 +8,33 @@
 
 SUITE(ply) {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                 kInfinity = std::numeric_limits<double>::infinity();
 
-void setAll(PlyText& ply, const std::string& name, double value) { std::ranges::fill(ply[name].values, value); }
+void setAll(PlyText& ply, const std::string& name, double value) {
+    std::ranges::fill(ply[name].values, value);
+}
 
 TEST_CASE_FIXTURE(InFolder, "a PLY's numbers arrive activated, in every encoding") {
     for (const Encoding encoding : kEncodings) {
         const auto [notes, scene] = readScene(folder.write("known.ply", makeIn(encoding).bytes()));
         REQUIRE(scene.size() == 3);
         CHECK(these(scene.sh_degree, scene.positions[2], scene.sh, scene.opacities[0]) ==
-              these(0, glm::vec3(-3.0f, 0.125f, 6.0f), std::vector<float>{0.0f, 0.25f, 0.5f, 0.0f, 0.5f, 1.0f, 0.0f, -0.5f, -1.0f}, 0.5f));
+              these(0, glm::vec3(-3.0f, 0.125f, 6.0f),
+                    std::vector<float>{0.0f, 0.25f, 0.5f, 0.0f, 0.5f, 1.0f, 0.0f, -0.5f, -1.0f}, 0.5f));
         CHECK(these(scene.opacities[1], scene.scales[0].x, scene.scales[0].y) ==
-              these(doctest::Approx(1.0 / (1.0 + std::exp(-2.0))).epsilon(1e-6), 1.0f, doctest::Approx(std::exp(-3.0)).epsilon(1e-6)));
+              these(doctest::Approx(1.0 / (1.0 + std::exp(-2.0))).epsilon(1e-6), 1.0f,
+                    doctest::Approx(std::exp(-3.0)).epsilon(1e-6)));
         CHECK(these(scene.rotations[0], scene.rotations[1], scene.rotations[2]) ==
-              these(glm::quat(1.0f, 0.0f, 0.0f, 0.0f), glm::quat(0.5f, 0.5f, 0.5f, 0.5f), glm::quat(0.0f, 0.0f, -1.0f, 0.0f)));
+              these(glm::quat(1.0f, 0.0f, 0.0f, 0.0f), glm::quat(0.5f, 0.5f, 0.5f, 0.5f),
+                    glm::quat(0.0f, 0.0f, -1.0f, 0.0f)));
         CHECK(these(notes.splats_in_file, notes.three_scales, notes.lines.empty()) == these(3, false, true));
     }
     for (const double length : {1e-30, 1e30}) {
         PlyText ply = makePly();
         for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) { ply[name].values[0] = length; }
-        CHECK(loadScene(folder.write("length.ply", ply.bytes())).rotations[0] == glm::quat(0.5f, 0.5f, 0.5f, 0.5f));
+        CHECK(loadScene(folder.write("length.ply", ply.bytes())).rotations[0] ==
+              glm::quat(0.5f, 0.5f, 0.5f, 0.5f));
     }
 }
 
@@ -38,7 +45,8 @@ TEST_CASE_FIXTURE(InFolder, "f_rest is channel-major in the file and coefficient
         REQUIRE(scene.sh_degree == degree);
         for (int channel = 0; channel < 3; ++channel) {
             for (int k = 1; k <= per_channel; ++k) {
-                const std::size_t at = static_cast<std::size_t>((1 * shCoefficientCount(degree) + k) * 3 + channel);
+                const std::size_t at =
+                    static_cast<std::size_t>((1 * shCoefficientCount(degree) + k) * 3 + channel);
                 CHECK(scene.sh[at] == static_cast<float>(100 + channel * per_channel + k - 1));
             }
         }
@@ -66,7 +74,9 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
     CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);
 }
 
-TEST_CASE("blocks that are read ahead on a thread of their own come all and in order, and what goes wrong in one is said") {
+TEST_CASE(
+    "blocks that are read ahead on a thread of their own come all and in order, and what goes wrong in one "
+    "is said") {
     const Folder folder;
     LoadNotes notes;
     // Around one block, one batch of eight, and two batches, from which on a thread is used.
@@ -74,7 +84,9 @@ TEST_CASE("blocks that are read ahead on a thread of their own come all and in o
         for (const std::size_t without_sh : {splats / 5, splats - 1, splats}) {
             INFO("splats ", splats, ", without_sh ", without_sh);
             Scene scene = randomScene(3, splats, false);
-            for (std::size_t i = 0; i < 48 * without_sh; ++i) { scene.sh[i] = i % 48 < 3 ? scene.sh[i] : 0.0f; }
+            for (std::size_t i = 0; i < 48 * without_sh; ++i) {
+                scene.sh[i] = i % 48 < 3 ? scene.sh[i] : 0.0f;
+            }
             if (without_sh == splats) { limitShDegree(scene, 0, notes); }
             const Scene loaded = writtenAndRead(folder, scene);
             REQUIRE(loaded.sh_degree == scene.sh_degree);
@@ -89,19 +101,26 @@ TEST_CASE("blocks that are read ahead on a thread of their own come all and in o
     const std::string header = replaced(ply.bytes(), "element vertex 0\n", middle);
     for (const std::size_t broken : {0u, 255u, 256u, 2048u, 9000u, 19'999u}) {
         rows[broken * row.size()] = 'x';
-        CHECK(contains(loadError(folder, header + rows), fmt::format("splat {} of 20000: property x is 'x'", broken)));
+        CHECK(contains(loadError(folder, header + rows),
+                       fmt::format("splat {} of 20000: property x is 'x'", broken)));
         rows[broken * row.size()] = '0';
     }
     // A reader that stops taking blocks waits for nothing.
     (void)folder.write("whole.ply", header + rows);
-    checkProgress(2, [&](const Progress& progress) { (void)loadScene(folder.file("whole.ply"), 0, nullptr, progress); });
+    checkProgress(2, [&](const Progress& progress) {
+        (void)loadScene(folder.file("whole.ply"), 0, nullptr, progress);
+    });
 }
 
-TEST_CASE_FIXTURE(InFolder, "of three scales the shortest becomes the last, the frame stays right-handed, and flattening drops it") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "of three scales the shortest becomes the last, the frame stays right-handed, and flattening drops it") {
     for (std::size_t shortest = 0; shortest < 3; ++shortest) {
         PlyText ply = makePly(0, true);
         const double logs[] = {-1.0, -2.0, -0.5}, rotation[] = {0.3, -0.5, 0.7, 0.2};
-        for (std::size_t axis = 0; axis < 3; ++axis) { setAll(ply, fmt::format("scale_{}", axis), axis == shortest ? -7.0 : logs[axis]); }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            setAll(ply, fmt::format("scale_{}", axis), axis == shortest ? -7.0 : logs[axis]);
+        }
         for (std::size_t i = 0; i < 4; ++i) { setAll(ply, fmt::format("rot_{}", i), rotation[i]); }
         LoadNotes notes;
         Scene scene = loadScene(folder.write("three.ply", ply.bytes()), 0, &notes);
@@ -113,7 +132,8 @@ TEST_CASE_FIXTURE(InFolder, "of three scales the shortest becomes the last, the 
         // The normal lies along the shortest axis.
         CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);
         CHECK(glm::determinant(kept) == doctest::Approx(1.0));
-        CHECK(these(scene.scales[0].x, scene.scales[0].y) == these(doctest::Approx(std::exp(logs[u])), doctest::Approx(std::exp(logs[v]))));
+        CHECK(these(scene.scales[0].x, scene.scales[0].y) ==
+              these(doctest::Approx(std::exp(logs[u])), doctest::Approx(std::exp(logs[v]))));
         CHECK(notes.three_scales);
         CHECK(notes.median_flatness == doctest::Approx(std::exp(-7.0 - std::min(logs[u], logs[v]))));
         REQUIRE(scene.isGaussian3d());
@@ -150,7 +170,9 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
     CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation, notes.lines.size()) == these(1, 1, 2));
 }
 
-TEST_CASE_FIXTURE(InFolder, "a logit of infinity is opacity 1; the shortest of three axes may have no extent, any other may not") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "a logit of infinity is opacity 1; the shortest of three axes may have no extent, any other may not") {
     for (const Encoding encoding : kEncodings) {
         for (const bool three_scales : {false, true}) {
             PlyText ply = makeIn(encoding, 9, three_scales);
@@ -187,7 +209,8 @@ TEST_CASE_FIXTURE(InFolder, "a logit of infinity is opacity 1; the shortest of t
 
 TEST_CASE_FIXTURE(InFolder, "a comment asks for antialiasing, the last one counts, and writing keeps it") {
     const auto loadWith = [&](const std::string& comments, bool three_scales = true) {
-        return loadScene(folder.write("said.ply", replaced(makePly(0, three_scales).bytes(), "comment made for a test\n", comments)));
+        return loadScene(folder.write(
+            "said.ply", replaced(makePly(0, three_scales).bytes(), "comment made for a test\n", comments)));
     };
     for (const auto& [comments, asks] : {std::pair("comment SplatRenderMode: mip\n", true),
                                          {"comment  splatrendermode:  MIP \r\n", true},
@@ -227,7 +250,8 @@ TEST_CASE_FIXTURE(InFolder, "what is written reads back the same, opacity 0 and 
         scene.opacities = {0.0f, 1.0f, 0.999999f};
         scene.scales = {{0.0f, 1e-6f}, {1.0f, 2.0f}, {3.0f, 1e6f}};
         const Scene again = writtenAndRead(folder, scene);
-        CHECK(these(again.positions, again.sh, again.opacities[0], again.opacities[1], again.opacities[2], again.scales[0].x) ==
+        CHECK(these(again.positions, again.sh, again.opacities[0], again.opacities[1], again.opacities[2],
+                    again.scales[0].x) ==
               these(scene.positions, scene.sh, 0.0f, 1.0f, doctest::Approx(0.999999).epsilon(1e-6), 0.0f));
         CHECK(again.scales[0].y == doctest::Approx(1e-6).epsilon(1e-5));
         for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -239,7 +263,8 @@ TEST_CASE_FIXTURE(InFolder, "what is written reads back the same, opacity 0 and 
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "loading and writing report progress from 0 to 1, and writing leaves nothing half-written") {
+TEST_CASE_FIXTURE(
+    InFolder, "loading and writing report progress from 0 to 1, and writing leaves nothing half-written") {
     const Scene scene = makeBuiltin("builtin:one-splat"), large = randomScene(0, 100'000);
     const auto errorTo = [&](const std::string& path) { return errorOf([&] { writePly(scene, path); }); };
     CHECK(contains(errorTo(folder.file("absent/scene.ply")), "cannot be written"));
@@ -257,7 +282,8 @@ TEST_CASE_FIXTURE(InFolder, "loading and writing report progress from 0 to 1, an
     CHECK(loadScene(folder.file("kept.ply")).size() == 1);
     CHECK(folder.fileCount() == 1);
     writePly(large, folder.file("kept.ply"));
-    checkProgress(4, [&](const Progress& progress) { (void)loadScene(folder.file("kept.ply"), 0, nullptr, progress); });
+    checkProgress(
+        4, [&](const Progress& progress) { (void)loadScene(folder.file("kept.ply"), 0, nullptr, progress); });
 }
 
 TEST_CASE_FIXTURE(InFolder, "errors of the source itself say what it is") {
@@ -270,8 +296,10 @@ TEST_CASE_FIXTURE(InFolder, "errors of the source itself say what it is") {
     CHECK(contains(loadError(folder.write("picture.ply", "P6 not a scene")), "not a scene file"));
     CHECK(loadScene(folder.write("named_otherwise.txt", makePly().bytes())).size() == 3);
 
-    const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, 'a') + "\nsize 12345\n";
-    for (const char* name : {"scene.ply", "scene.splat", "scene.spz", "scene.sog", "meta.json", "lod-meta.json"}) {
+    const std::string pointer =
+        "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, 'a') + "\nsize 12345\n";
+    for (const char* name :
+         {"scene.ply", "scene.splat", "scene.spz", "scene.sog", "meta.json", "lod-meta.json"}) {
         CHECK(contains(loadError(folder.write(name, pointer)), std::string(name) + ": is a Git LFS pointer"));
     }
     CHECK(contains(loadError(folder.write("short", pointer.substr(0, 30))), "not a scene file"));
@@ -291,8 +319,8 @@ TEST_CASE_FIXTURE(InFolder, "absurd counts are refused before anything is alloca
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding);
         for (const char* count : {"4", "1000000000", "18446744073709551615"}) {
-            const std::string message =
-                loadError(folder, replaced(ply.bytes(), "element vertex 3", fmt::format("element vertex {}", count)));
+            const std::string message = loadError(
+                folder, replaced(ply.bytes(), "element vertex 3", fmt::format("element vertex {}", count)));
             CHECK(contains(message, "broken.ply: data: ends"));
             CHECK(contains(message, fmt::format("of {}", count)));
         }
@@ -303,11 +331,16 @@ TEST_CASE_FIXTURE(InFolder, "absurd counts are refused before anything is alloca
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "ascii values that are no numbers are named, with their splat, and a file that ends in a splat says in which") {
+TEST_CASE_FIXTURE(InFolder,
+                  "ascii values that are no numbers are named, with their splat, and a file that ends in a "
+                  "splat says in which") {
     const std::string good = makeIn(Encoding::kAscii).bytes(), binary = makePly().bytes();
-    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 zwei")), "splat 1 of 3: property y is 'zwei'"));
-    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2")), "splat 1 of 3: property rot_3 is ''"));
-    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 0.25 1")), "splat 1 of 3: more than the expected 16 values"));
+    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 zwei")),
+                   "splat 1 of 3: property y is 'zwei'"));
+    CHECK(
+        contains(loadError(folder, replaced(good, "\n2 0.25", "\n2")), "splat 1 of 3: property rot_3 is ''"));
+    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 0.25 1")),
+                   "splat 1 of 3: more than the expected 16 values"));
     CHECK(loadError(folder, replaced(good, "\n2 0.25", "\n\n+2 \t 2.5e-1")).empty());
     CHECK(contains(loadError(folder, binary.substr(0, binary.size() - 1)), "ends in splat 2 of 3"));
 }
@@ -330,9 +363,12 @@ TEST_CASE_FIXTURE(InFolder, "read in parts, a file is what it is as a whole, and
         appendSplats(all, part);
     });
     CHECK(sizes == std::vector<std::size_t>{511, 511, 476});
-    CHECK(these(all.positions, all.rotations, all.scales, all.thicknesses, all.opacities, all.sh, all.sh_degree, all.name) ==
-          these(whole.positions, whole.rotations, whole.scales, whole.thicknesses, whole.opacities, whole.sh, whole.sh_degree, whole.name));
-    CHECK(these(notes.splats_in_file, notes.skipped_not_finite) == these(whole_notes.splats_in_file, whole_notes.skipped_not_finite));
+    CHECK(these(all.positions, all.rotations, all.scales, all.thicknesses, all.opacities, all.sh,
+                all.sh_degree, all.name) == these(whole.positions, whole.rotations, whole.scales,
+                                                  whole.thicknesses, whole.opacities, whole.sh,
+                                                  whole.sh_degree, whole.name));
+    CHECK(these(notes.splats_in_file, notes.skipped_not_finite) ==
+          these(whole_notes.splats_in_file, whole_notes.skipped_not_finite));
 }
 
 }  // SUITE(ply)

@@ -22,7 +22,8 @@ void checkSound(const Scene& scene, std::uint64_t splats) {
     for (std::size_t i = 0; i < splats; ++i) {
         finite &= std::isfinite(scene.positions[i].x + scene.positions[i].y + scene.positions[i].z);
         unit &= std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-5f;
-        positive &= scene.scales[i].x > 0.0f && scene.scales[i].y > 0.0f && std::isfinite(scene.scales[i].x + scene.scales[i].y);
+        positive &= scene.scales[i].x > 0.0f && scene.scales[i].y > 0.0f &&
+                    std::isfinite(scene.scales[i].x + scene.scales[i].y);
         opaque &= scene.opacities[i] > 0.0f && scene.opacities[i] <= 1.0f;
     }
     for (const float value : scene.sh) { finite &= std::isfinite(value); }
@@ -34,7 +35,9 @@ void checkSound(const Scene& scene, std::uint64_t splats) {
 
 std::string withSplats(int splats) {
     PlyText ply = makePly();
-    for (Column& column : ply.columns) { column.values.resize(static_cast<std::size_t>(splats), column.values[0]); }
+    for (Column& column : ply.columns) {
+        column.values.resize(static_cast<std::size_t>(splats), column.values[0]);
+    }
     return ply.bytes();
 }
 
@@ -55,7 +58,9 @@ struct Garden : Folder {
         const SceneSeries series(path());
         std::vector<std::size_t> counts;
         LoadNotes notes;
-        for (std::size_t frame = 0; frame < series.size(); ++frame) { counts.push_back(series.load(series.sceneOf(frame), notes).size()); }
+        for (std::size_t frame = 0; frame < series.size(); ++frame) {
+            counts.push_back(series.load(series.sceneOf(frame), notes).size());
+        }
         return counts;
     }
 };
@@ -66,7 +71,8 @@ TEST_CASE("every built-in scene is sound, repeats exactly and has a view") {
         LoadNotes notes;
         // Baking light takes a while.
         const std::uint64_t splats = std::min<std::uint64_t>(info.default_splats, 20'000);
-        const Scene scene = loadScene("builtin:" + info.name, splats == info.default_splats ? 0 : splats, &notes);
+        const Scene scene =
+            loadScene("builtin:" + info.name, splats == info.default_splats ? 0 : splats, &notes);
         checkSound(scene, splats);
         CHECK(scene.name == "builtin:" + info.name);
         CHECK(these(notes.splats_in_file, notes.axes, notes.colour_space) ==
@@ -77,7 +83,9 @@ TEST_CASE("every built-in scene is sound, repeats exactly and has a view") {
     }
 }
 
-TEST_CASE("the atelier has exactly the splats asked for, its light is baked alike at any number, and only its glazed vase shines") {
+TEST_CASE(
+    "the atelier has exactly the splats asked for, its light is baked alike at any number, and only its "
+    "glazed vase shines") {
     glm::dvec3 colour_before(0.0);
     for (const std::uint64_t splats : {1000u, 1001u, 4999u, 50'000u}) {
         const Scene scene = makeBuiltin("builtin:atelier", splats);
@@ -85,13 +93,16 @@ TEST_CASE("the atelier has exactly the splats asked for, its light is baked alik
         CHECK(scene.sh_degree == 3);
         glm::dvec3 colour(0.0);
         for (std::size_t i = 0; i < splats; ++i) {
-            colour += glm::dvec3(scene.sh[48 * i], scene.sh[48 * i + 1], scene.sh[48 * i + 2]) / double(splats);
+            colour +=
+                glm::dvec3(scene.sh[48 * i], scene.sh[48 * i + 1], scene.sh[48 * i + 2]) / double(splats);
         }
         if (splats > 1001) { CHECK(glm::length(colour - colour_before) < 0.12); }
         colour_before = colour;
         if (splats < 50'000) { continue; }
         const SceneSummary summary = describeScene(scene);
-        for (const std::size_t band : {1u, 2u, 3u}) { CHECK(summary.splats_using_band[band] == between(50, 5'000)); }
+        for (const std::size_t band : {1u, 2u, 3u}) {
+            CHECK(summary.splats_using_band[band] == between(50, 5'000));
+        }
         // y points down: the feet of the hills lie slightly below, the sky far above
         CHECK(summary.max_position.y < 50.0f);
         CHECK(summary.min_position.y < -100.0f);
@@ -131,11 +142,13 @@ TEST_CASE_FIXTURE(InFolder, "a summary counts what is there and what is not need
     ply["opacity"].values[2] = -9.0;
     const auto [notes, scene] = readScene(folder.write("bands.ply", ply.bytes()));
     const SceneSummary summary = describeScene(scene, &notes);
-    CHECK(these(summary.splats, summary.min_position, summary.max_position, summary.sh_degree, summary.splats_using_band[1]) ==
+    CHECK(these(summary.splats, summary.min_position, summary.max_position, summary.sh_degree,
+                summary.splats_using_band[1]) ==
           these(3, glm::vec3(-3.0f, 0.125f, 4.0f), glm::vec3(2.0f, 0.5f, 6.0f), 1, 3));
-    CHECK(these(summary.splats_using_band[2], summary.invisible_splats, summary.host_bytes, summary.opacity_quantiles[2]) ==
-          these(0, 1, 3 * (12 + 16 + 8 + 4 + 48), 0.5f));
-    CHECK(these(summary.scale_quantiles[4], summary.scale_quantiles[0]) == these(1.0f, doctest::Approx(std::exp(-1.5))));
+    CHECK(these(summary.splats_using_band[2], summary.invisible_splats, summary.host_bytes,
+                summary.opacity_quantiles[2]) == these(0, 1, 3 * (12 + 16 + 8 + 4 + 48), 0.5f));
+    CHECK(these(summary.scale_quantiles[4], summary.scale_quantiles[0]) ==
+          these(1.0f, doctest::Approx(std::exp(-1.5))));
     REQUIRE(summary.left_out.size() == 2);
     CHECK(contains(summary.left_out[0], "SH bands 2 to 3"));
 }
@@ -176,13 +189,17 @@ SCRIPT(scene, "engine/files/scene") {
                     },
                     garden.path()};
     host.names = {{"ROOT", withSlashes(garden.path())}};
-    host.verbs["folder"] = [&](const std::string& name) { std::filesystem::create_directories(garden.file(name)); };
+    host.verbs["folder"] = [&](const std::string& name) {
+        std::filesystem::create_directories(garden.file(name));
+    };
     host.verbs["still"] = [&](const std::string& name) {
         CHECK_FALSE(isMovingScene(name.starts_with("builtin:") ? name : garden.file(name)));
     };
     host.verbs["place"] = [&](const std::string& line) {
         const std::vector<std::string> words = wordsIn(line);
-        for (std::size_t i = 0; i < words.size(); i += 2) { garden.place({{words[i], std::stoi(words.at(i + 1))}}); }
+        for (std::size_t i = 0; i < words.size(); i += 2) {
+            garden.place({{words[i], std::stoi(words.at(i + 1))}});
+        }
     };
     // A moving scene's frames, with its only note after a colon; `!` and the message if it is refused.
     host.verbs["frames"] = [&](const std::string& expected) {
@@ -212,15 +229,20 @@ SCRIPT(scene, "engine/files/scene") {
 }
 
 TEST_CASE_FIXTURE(Garden,
-                  "a training's cameras are found from its folder and from that of its point clouds, and frames that grow are told") {
-    place({{"point_cloud/iteration_100/point_cloud.ply", 1}, {"cameras.json", 0}, {"film/a1.ply", 1}, {"film/a2.ply", 2}});
+                  "a training's cameras are found from its folder and from that of its point clouds, and "
+                  "frames that grow are told") {
+    place({{"point_cloud/iteration_100/point_cloud.ply", 1},
+           {"cameras.json", 0},
+           {"film/a1.ply", 1},
+           {"film/a2.ply", 2}});
     for (const char* folder : {"", "point_cloud", "point_cloud/"}) {
         const std::optional<TrainingOutput> found = findTrainingOutput(file(folder));
         REQUIRE(found);
         CHECK(std::filesystem::equivalent(found->cameras, file("cameras.json")));
         CHECK(findCameraFile(file(folder)) == file("cameras.json"));
     }
-    CHECK(these(SceneSeries(file("film")).growth() > 1.0, SceneSeries(file("film")).sceneCount()) == these(true, 2));
+    CHECK(these(SceneSeries(file("film")).growth() > 1.0, SceneSeries(file("film")).sceneCount()) ==
+          these(true, 2));
 }
 
 TEST_CASE_FIXTURE(Garden, "the frames of a moving scene count from one place") {
@@ -242,7 +264,8 @@ TEST_CASE_FIXTURE(Garden, "the frames of a moving scene count from one place") {
     }
 }
 
-TEST_CASE_FIXTURE(Garden, "a frame of another format is refused when it is looked at, and the next one is shown") {
+TEST_CASE_FIXTURE(Garden,
+                  "a frame of another format is refused when it is looked at, and the next one is shown") {
     place({{"b1.ply", 1}, {"b3.ply", 3}});
     (void)write("b2.ply", std::string(320, '\0'));
     const SceneSeries series(path());

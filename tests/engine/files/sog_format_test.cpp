@@ -10,13 +10,17 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
         // In logarithmic space.
         const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);
         CHECK(these(scene.positions[i].x, scene.positions[i].y, scene.positions[i].z) ==
-              these(doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)), doctest::Approx(-std::expm1(2.0)), doctest::Approx(1.0)));
+              these(doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)),
+                    doctest::Approx(-std::expm1(2.0)), doctest::Approx(1.0)));
         // The first of three growing scales is dropped.
-        CHECK(scene.scales[i].x == doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 1) / 32.0)));
-        CHECK(scene.scales[i].y == doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 2) / 32.0)));
+        CHECK(scene.scales[i].x ==
+              doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 1) / 32.0)));
+        CHECK(scene.scales[i].y ==
+              doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 2) / 32.0)));
         const double byte = static_cast<double>(255 * i / 8);
         CHECK(scene.opacities[i] ==
-              doctest::Approx(version1 ? 1.0 / (1.0 + std::exp(10.0 - byte * 20.0 / 255.0)) : byte / 255.0).epsilon(1e-4));
+              doctest::Approx(version1 ? 1.0 / (1.0 + std::exp(10.0 - byte * 20.0 / 255.0)) : byte / 255.0)
+                  .epsilon(1e-4));
         for (std::size_t channel = 0; channel < 3; ++channel) {
             const auto level = static_cast<double>(20 * i + channel);
             CHECK(scene.sh[12 * i + channel] == doctest::Approx(-2.0 + level / 64.0).epsilon(1e-4));
@@ -24,23 +28,28 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
         for (std::size_t k = 0; k < 3; ++k) {
             const double red = i % 2 == 0 ? 65.0 : 1.0;
             CHECK(scene.sh[12 * i + 3 * (k + 1) + 0] == doctest::Approx(-2.0 + red / 64.0).epsilon(1e-4));
-            CHECK(scene.sh[12 * i + 3 * (k + 1) + 1] == doctest::Approx(-2.0 + static_cast<double>(k) / 64.0).epsilon(1e-4));
+            CHECK(scene.sh[12 * i + 3 * (k + 1) + 1] ==
+                  doctest::Approx(-2.0 + static_cast<double>(k) / 64.0).epsilon(1e-4));
             CHECK(scene.sh[12 * i + 3 * (k + 1) + 2] == doctest::Approx(-2.0 + 100.0 / 64.0).epsilon(1e-4));
         }
     }
-    CHECK(these(notes.three_scales, notes.median_flatness) == these(true, doctest::Approx(std::exp(-1.0 / 32.0)).epsilon(1e-4)));
+    CHECK(these(notes.three_scales, notes.median_flatness) ==
+          these(true, doctest::Approx(std::exp(-1.0 / 32.0)).epsilon(1e-4)));
 }
 
 TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes that were stored") {
     std::mt19937 random(3);
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(5, 7), glm::uvec2(192, 7)}) {
         std::vector<std::uint8_t> rgba;
-        for (std::uint32_t i = 0; i < 4 * size_px.x * size_px.y; ++i) { rgba.push_back(static_cast<std::uint8_t>(random())); }
+        for (std::uint32_t i = 0; i < 4 * size_px.x * size_px.y; ++i) {
+            rgba.push_back(static_cast<std::uint8_t>(random()));
+        }
         // Colours under an alpha of zero are data, too.
         for (std::size_t i = 3; i < rgba.size(); i += 8) { rgba[i] = 0; }
         const std::string plain = makeWebp(size_px.x, size_px.y, rgba);
-        const std::string chunks = "WEBPVP8X" + littleWord(10) + littleWord(0x10) + littleWord(size_px.x - 1, 3) +
-                                   littleWord(size_px.y - 1, 3) + "ICCP" + littleWord(3) + std::string(4, 'i') + plain.substr(12);
+        const std::string chunks = "WEBPVP8X" + littleWord(10) + littleWord(0x10) +
+                                   littleWord(size_px.x - 1, 3) + littleWord(size_px.y - 1, 3) + "ICCP" +
+                                   littleWord(3) + std::string(4, 'i') + plain.substr(12);
         for (const std::string& file : {plain, "RIFF" + littleWord(chunks.size()) + chunks}) {
             const auto bytes = std::as_bytes(std::span(file.data(), file.size()));
             CHECK(webpSize(bytes, "x") == size_px);
@@ -49,7 +58,8 @@ TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes 
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "both versions mean what their tables say, in a directory, a bundle, and by their meta.json") {
+TEST_CASE_FIXTURE(
+    InFolder, "both versions mean what their tables say, in a directory, a bundle, and by their meta.json") {
     for (const int version : {1, 2}) {
         CAPTURE(version);
         const SogText files = makeSog(version);
@@ -61,20 +71,25 @@ TEST_CASE_FIXTURE(InFolder, "both versions mean what their tables say, in a dire
         for (const bool deflated : {false, true}) {
             checkSameScene(scene, loadScene(folder.write("bundle.sog", makeZip(files, deflated))));
             for (const char* within : {"within/", ".\\within\\"}) {
-                checkSameScene(scene, loadScene(folder.write("bundle.bin", makeZip(files, deflated, within))));
+                checkSameScene(scene,
+                               loadScene(folder.write("bundle.bin", makeZip(files, deflated, within))));
             }
         }
         // As some writers make them: a byte order mark, a number with a decimal point, Windows paths.
         SogText odd = files;
         std::string& meta = odd["meta.json"];
-        meta = "\xef\xbb\xbf" + replaced(replaced(meta, "\"q.webp\"", R"(".\\q.webp")"), "\"l.webp\"", "\"./l.webp\"");
-        meta = version == 2 ? replaced(meta, "\"count\":8", "\"count\":8.0") : replaced(meta, "[8,3]", "[8.0,3.0]");
+        meta = "\xef\xbb\xbf" +
+               replaced(replaced(meta, "\"q.webp\"", R"(".\\q.webp")"), "\"l.webp\"", "\"./l.webp\"");
+        meta = version == 2 ? replaced(meta, "\"count\":8", "\"count\":8.0")
+                            : replaced(meta, "[8,3]", "[8.0,3.0]");
         checkSameScene(scene, loadScene(writeSogFolder(folder, "odd", odd)));
         checkSameScene(scene, loadScene(folder.file("odd/meta.json")));
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that use what is not there are skipped and counted") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "rotations name their largest component; splats that use what is not there are skipped and counted") {
     SogText files = makeSog();
     // If the third scale is the shortest, the quaternion stays as stored.
     files["s.webp"] = makeNine([](int) { return std::array{9, 9, 0, 9}; });
@@ -83,7 +98,8 @@ TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that
         const glm::quat q = scene.rotations[i];
         const float stored[] = {q.w, q.x, q.y, q.z};
         for (std::size_t k = 0; k < 4; ++k) {
-            CHECK(stored[k] == doctest::Approx(k == i % 4 ? 1.0 : (128.0 / 255.0 * 2 - 1) / std::sqrt(2.0)).epsilon(1e-4));
+            CHECK(stored[k] ==
+                  doctest::Approx(k == i % 4 ? 1.0 : (128.0 / 255.0 * 2 - 1) / std::sqrt(2.0)).epsilon(1e-4));
         }
     }
     files["q.webp"] = makeNine([](int i) { return std::array{128, 128, 128, i < 3 ? 251 : 252}; });
@@ -94,7 +110,9 @@ TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that
     CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation) == these(4, 1));
 }
 
-TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old writers or of new ones, or says that the scene is of discs") {
+TEST_CASE_FIXTURE(InFolder,
+                  "a key asks for antialiasing, by the name of old writers or of new ones, or says that the "
+                  "scene is of discs") {
     LoadNotes notes;
     const auto loadWith = [&](const std::string& key) {
         SogText files = makeSog();
@@ -103,7 +121,8 @@ TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old wri
     };
     const Scene gaussians = loadWith("");
     CHECK(these(gaussians.isGaussian3d(), gaussians.antialiased) == these(true, false));
-    CHECK(these(loadWith("\"antialias\":true,").antialiased, loadWith("\"antialias\":false,").antialiased) == these(true, false));
+    CHECK(these(loadWith("\"antialias\":true,").antialiased, loadWith("\"antialias\":false,").antialiased) ==
+          these(true, false));
     CHECK(loadWith("\"model\":\"antialiased\",").antialiased);
     // A streamed scene is antialiased if one of its chunks is.
     const std::string streamed = writeStreamed(folder, "streamed", makeLodMeta());
@@ -134,15 +153,19 @@ SCRIPT(sog_format, "engine/files/sog_format") {
     });
 }
 
-TEST_CASE_FIXTURE(InFolder, "pictures of the wrong size or kind are named, and those that are there to fill the memory are refused") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "pictures of the wrong size or kind are named, and those that are there to fill the memory are refused") {
     SogText files = makeSog();
     const std::vector<std::uint8_t> bytes(191 * 8, 255);
     const std::string whole = files.at("u.webp");
     const std::vector<Fault> faults{
         {"q.webp", makeWebp(4, 4, std::vector<std::uint8_t>(64, 255)), "is 4 x 4, expected 3 x 3 as l.webp"},
-        {"q.webp", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "is a Git LFS pointer"},
+        {"q.webp", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
+         "is a Git LFS pointer"},
         {"p.webp", makeWebp(191, 2, bytes), "191 pixels wide, expected 192, 512 or 960"},
-        {"u.webp", "RIFF\x0c" + std::string(3, '\0') + "WEBPVP8 " + std::string(30, '\0'), "a lossy or moving WebP"},
+        {"u.webp", "RIFF\x0c" + std::string(3, '\0') + "WEBPVP8 " + std::string(30, '\0'),
+         "a lossy or moving WebP"},
         {"u.webp", "not a picture at all, but long enough", "not a WebP file"},
         {"u.webp", whole.substr(0, whole.size() - 2), "bytes of its picture"},
         {"meta.json", files.at("meta.json") + std::string(5'000'000, ' '), "meta.json: is 50"}};
@@ -156,7 +179,8 @@ TEST_CASE_FIXTURE(InFolder, "pictures of the wrong size or kind are named, and t
     // An entry of 20 MB of blanks, packed into a few KB.
     SogText blank = files;
     blank["q.webp"] = std::string(20'000'000, ' ');
-    CHECK(contains(loadError(folder.write("a.sog", makeZip(blank, true))), "q.webp: is 20000000 bytes long, expected at most"));
+    CHECK(contains(loadError(folder.write("a.sog", makeZip(blank, true))),
+                   "q.webp: is 20000000 bytes long, expected at most"));
     // A few hundred bytes that claim to hold 16383 x 16383 pixels.
     for (const char* name : {"l.webp", "u.webp", "s.webp", "q.webp", "c.webp", "n.webp"}) {
         std::string& picture = files[name];
@@ -166,7 +190,9 @@ TEST_CASE_FIXTURE(InFolder, "pictures of the wrong size or kind are named, and t
     CHECK(contains(loadError(writeSogFolder(folder, "scene", files)), "expected fewer than 256 per byte"));
 }
 
-TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among others; archives that are not whole are refused") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "a bundle's files may come in any order, and among others; archives that are not whole are refused") {
     const SogText files = makeSog();
     std::vector<std::pair<std::string, std::string>> entries(files.begin(), files.end());
     const Scene scene = loadScene(writeSogFolder(folder, "scene", files));
@@ -174,7 +200,8 @@ TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among o
         std::ranges::rotate(entries, entries.begin() + 1);
         checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0))));
         std::ranges::reverse(entries);
-        checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0, "in/a folder/"))));
+        checkSameScene(scene,
+                       loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0, "in/a folder/"))));
     }
     // The scene is where the path of meta.json is shortest.
     entries.insert(entries.begin(), {"older/meta.json", "{}"});
@@ -182,8 +209,9 @@ TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among o
     entries.emplace_back("not-meta.json", "");
     checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries))));
 
-    for (const auto& [missing, message] : {std::pair("meta.json", "files without a scene or the meta.json of one"),
-                                           std::pair("q.webp", "a.sog: q.webp: not in the archive")}) {
+    for (const auto& [missing, message] :
+         {std::pair("meta.json", "files without a scene or the meta.json of one"),
+          std::pair("q.webp", "a.sog: q.webp: not in the archive")}) {
         SogText less = files;
         less.erase(missing);
         CHECK(contains(loadError(folder.write("a.sog", makeZip(less))), message));
@@ -191,12 +219,16 @@ TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among o
     std::string changed = makeZip(files);
     changed[changed.find("RIFF") + 40] ^= 1;  // the checksum no longer matches
     CHECK(contains(loadError(folder.write("a.sog", changed)), "cannot be read"));
-    CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))), "not a whole zip archive"));
+    CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))),
+                   "not a whole zip archive"));
     std::string locked = makeZip(files);
     for (const auto& [header, flags] : {std::pair("PK\x03\x04", 6u), std::pair("PK\x01\x02", 8u)}) {
-        for (std::size_t at = 0; (at = locked.find(header, at)) != std::string::npos; ++at) { locked[at + flags] = 1; }
+        for (std::size_t at = 0; (at = locked.find(header, at)) != std::string::npos; ++at) {
+            locked[at + flags] = 1;
+        }
     }
-    CHECK(contains(loadError(folder.write("a.sog", locked)), "a.sog: meta.json: is encrypted and asks for a password"));
+    CHECK(contains(loadError(folder.write("a.sog", locked)),
+                   "a.sog: meta.json: is encrypted and asks for a password"));
 }
 
 }  // SUITE(sog_format)

@@ -17,7 +17,8 @@ inline std::string codebook(double first, double step, int entries = 256) {
 }
 
 // Four bytes per pixel.
-inline std::string makeWebp(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgba) {
+inline std::string makeWebp(std::uint32_t width, std::uint32_t height,
+                            const std::vector<std::uint8_t>& rgba) {
     const std::vector<std::byte> file = encodeWebp({{width, height}, rgba}, "a test's picture");
     return {reinterpret_cast<const char*>(file.data()), file.size()};
 }
@@ -43,7 +44,8 @@ inline SogText makeSog(int version = 2, bool with_palette = true) {
     files["s.webp"] = makeNine([](int i) { return Rgba{10 * i, 10 * i + 1, 10 * i + 2, 0}; });
     files["q.webp"] = makeNine([](int i) { return Rgba{128, 128, 128, 252 + i % 4}; });
     files["c.webp"] = makeNine([](int i) { return Rgba{20 * i, 20 * i + 1, 20 * i + 2, 255 * i / 8}; });
-    const std::string means = R"("mins":[-1,-2,0],"maxs":[1,0,0.6931471805599453],"files":["l.webp","u.webp"])";
+    const std::string means =
+        R"("mins":[-1,-2,0],"maxs":[1,0,0.6931471805599453],"files":["l.webp","u.webp"])";
     std::string meta, palette;
     if (with_palette) {
         // Degree 1: 64 entries of three pixels in each row; coefficient k of entry e has the bytes (e, k,
@@ -55,19 +57,25 @@ inline SogText makeSog(int version = 2, bool with_palette = true) {
         files["p.webp"] = makeWebp(192, 2, centroids);
         // An entry in the palette's second row, or in the first.
         files["n.webp"] = makeNine([](int i) { return Rgba{i % 2 == 0 ? 65 : 1, 0, 0, 0}; });
-        palette = version == 2
-                      ? R"(,"shN":{"count":128,"bands":1,"codebook":)" + codebook(-2, 1.0 / 64) + R"(,"files":["p.webp","n.webp"]})"
-                      : R"(,"shN":{"shape":[8,9],"mins":-2,"maxs":1.984375,"quantization":8,"files":["p.webp","n.webp"]})";
+        palette =
+            version == 2
+                ? R"(,"shN":{"count":128,"bands":1,"codebook":)" + codebook(-2, 1.0 / 64) +
+                      R"(,"files":["p.webp","n.webp"]})"
+                : R"(,"shN":{"shape":[8,9],"mins":-2,"maxs":1.984375,"quantization":8,"files":["p.webp",)"
+                  R"("n.webp"]})";
     }
     if (version == 2) {
-        meta = R"({"version":2,"count":8,"means":{)" + means + R"(},"scales":{"codebook":)" + codebook(-8, 1.0 / 32) +
-               R"(,"files":["s.webp"]},"quats":{"files":["q.webp"]},"sh0":{"codebook":)" + codebook(-2, 1.0 / 64) +
-               R"(,"files":["c.webp"]})" + palette + "}";
+        meta = R"({"version":2,"count":8,"means":{)" + means + R"(},"scales":{"codebook":)" +
+               codebook(-8, 1.0 / 32) +
+               R"(,"files":["s.webp"]},"quats":{"files":["q.webp"]},"sh0":{"codebook":)" +
+               codebook(-2, 1.0 / 64) + R"(,"files":["c.webp"]})" + palette + "}";
     } else {
         meta = R"({"means":{"shape":[8,3],"dtype":"float32",)" + means +
-               R"(},"scales":{"shape":[8,3],"mins":[-8,-8,-8],"maxs":[-0.03125,-0.03125,-0.03125],"files":["s.webp"]},)"
+               R"(},"scales":{"shape":[8,3],"mins":[-8,-8,-8],"maxs":[-0.03125,-0.03125,-0.03125],)"
+               R"("files":["s.webp"]},)"
                R"("quats":{"shape":[8,4],"encoding":"quaternion_packed","files":["q.webp"]},)"
-               R"("sh0":{"shape":[8,1,4],"mins":[-2,-2,-2,-10],"maxs":[1.984375,1.984375,1.984375,10],"files":["c.webp"]})" +
+               R"("sh0":{"shape":[8,1,4],"mins":[-2,-2,-2,-10],"maxs":[1.984375,1.984375,1.984375,10],)"
+               R"("files":["c.webp"]})" +
                palette + "}";
     }
     files["meta.json"] = meta;
@@ -82,26 +90,30 @@ inline std::string writeSogFolder(const Folder& folder, const std::string& name,
 }
 
 // A zip archive of stored entries, or deflated ones, in the order of `files`; names get `prefix`.
-inline std::string makeZip(const std::vector<std::pair<std::string, std::string>>& files, bool are_deflated = false,
-                           const std::string& prefix = "") {
+inline std::string makeZip(const std::vector<std::pair<std::string, std::string>>& files,
+                           bool are_deflated = false, const std::string& prefix = "") {
     std::string archive, directory;
     for (const auto& [plain_name, bytes] : files) {
         const std::string name = prefix + plain_name;
         const std::string packed = are_deflated ? deflated(bytes, -MAX_WBITS) : bytes;
-        const auto sum = crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
-        const std::string common = littleWord(20, 2) + littleWord(0, 2) + littleWord(are_deflated ? 8 : 0, 2) + littleWord(0) +
-                                   littleWord(sum) + littleWord(packed.size()) + littleWord(bytes.size()) + littleWord(name.size(), 2) +
-                                   littleWord(0, 2);
-        directory += "PK\x01\x02" + littleWord(20, 2) + common + littleWord(0, 2) + littleWord(0, 2) + littleWord(0, 2) + littleWord(0) +
-                     littleWord(archive.size()) + name;
+        const auto sum =
+            crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
+        const std::string common = littleWord(20, 2) + littleWord(0, 2) +
+                                   littleWord(are_deflated ? 8 : 0, 2) + littleWord(0) + littleWord(sum) +
+                                   littleWord(packed.size()) + littleWord(bytes.size()) +
+                                   littleWord(name.size(), 2) + littleWord(0, 2);
+        directory += "PK\x01\x02" + littleWord(20, 2) + common + littleWord(0, 2) + littleWord(0, 2) +
+                     littleWord(0, 2) + littleWord(0) + littleWord(archive.size()) + name;
         archive += "PK\x03\x04" + common + name + packed;
     }
-    return archive + directory + "PK\x05\x06" + littleWord(0, 4) + littleWord(files.size(), 2) + littleWord(files.size(), 2) +
-           littleWord(directory.size()) + littleWord(archive.size()) + littleWord(0, 2);
+    return archive + directory + "PK\x05\x06" + littleWord(0, 4) + littleWord(files.size(), 2) +
+           littleWord(files.size(), 2) + littleWord(directory.size()) + littleWord(archive.size()) +
+           littleWord(0, 2);
 }
 
 inline std::string makeZip(const SogText& files, bool are_deflated = false, const std::string& prefix = "") {
-    return makeZip(std::vector<std::pair<std::string, std::string>>(files.begin(), files.end()), are_deflated, prefix);
+    return makeZip(std::vector<std::pair<std::string, std::string>>(files.begin(), files.end()), are_deflated,
+                   prefix);
 }
 
 }  // namespace binosplat::test

@@ -22,7 +22,8 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
     CHECK(Codebook(std::vector<float>{}).values()[255] == 0.0f);
 
     const Codebook apart(few, -200.0f);
-    CHECK(these(apart.values()[0], apart.nearest(-200.0f), apart.values()[apart.nearest(-1.0f)]) == these(-200.0f, 0, -1.0f));
+    CHECK(these(apart.values()[0], apart.nearest(-200.0f), apart.values()[apart.nearest(-1.0f)]) ==
+          these(-200.0f, 0, -1.0f));
     CHECK(Codebook(std::vector<float>{}, -20.0f).values()[255] == -20.0f);
 
     std::mt19937 random(5);
@@ -31,19 +32,23 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
     for (float& number : numbers) { number = bell(random); }
     const auto squares = [&](const auto& rounded) {
         double sum = 0.0;
-        for (const float number : numbers) { sum += std::pow(static_cast<double>(number - rounded(number)), 2); }
+        for (const float number : numbers) {
+            sum += std::pow(static_cast<double>(number - rounded(number)), 2);
+        }
         return sum / static_cast<double>(numbers.size());
     };
     const Codebook book(numbers);
     const double error = squares([&](float number) { return book.values()[book.nearest(number)]; });
     // By Panter and Dite: sqrt(3) pi / 2 / 256^2 for a normal distribution with variance 1.
     CHECK(error < 1.1 * 2.7207 / 65536.0);
-    const double even = squares([](float number) { return std::round((number + 5.0f) * 25.5f) / 25.5f - 5.0f; });
+    const double even =
+        squares([](float number) { return std::round((number + 5.0f) * 25.5f) / 25.5f - 5.0f; });
     CHECK(error < even / 2.0);
     for (std::size_t i = 0; i < 1000; ++i) {
         const float kept = book.values()[book.nearest(numbers[i])];
-        CHECK(std::ranges::none_of(book.values(),
-                                   [&](float value) { return std::abs(value - numbers[i]) < std::abs(kept - numbers[i]) - 1e-7f; }));
+        CHECK(std::ranges::none_of(book.values(), [&](float value) {
+            return std::abs(value - numbers[i]) < std::abs(kept - numbers[i]) - 1e-7f;
+        }));
     }
 
     // An outlier does not take entries of the codebook away from the other numbers.
@@ -60,7 +65,9 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
 TEST_CASE("a palette keeps rows of zeros and as many different rows as it has entries") {
     Scene scene = randomScene(2, 2000);
     for (std::size_t i = 0; i < scene.size(); ++i) {
-        for (std::size_t k = 3; k < 27; ++k) { scene.sh[27 * i + k] = i % 3 == 0 ? 0.0f : static_cast<float>((i % 40) * k % 17) / 17.0f; }
+        for (std::size_t k = 3; k < 27; ++k) {
+            scene.sh[27 * i + k] = i % 3 == 0 ? 0.0f : static_cast<float>((i % 40) * k % 17) / 17.0f;
+        }
     }
     const ShPalette palette = makeShPalette(scene, 64, {});
     CHECK(palette.coefficients == 8);
@@ -85,7 +92,9 @@ TEST_CASE("a palette's rows come nearer to the harmonics the more there are") {
         for (std::size_t i = 0; i < scene.size(); ++i) {
             REQUIRE(palette.labels[i] < palette.size());
             for (std::size_t k = 0; k < 9; ++k) {
-                squares += std::pow(static_cast<double>(palette.entries[9 * palette.labels[i] + k] - scene.sh[12 * i + 3 + k]), 2);
+                squares += std::pow(static_cast<double>(palette.entries[9 * palette.labels[i] + k] -
+                                                        scene.sh[12 * i + 3 + k]),
+                                    2);
             }
         }
         CHECK(squares < 0.95 * before);
@@ -94,7 +103,9 @@ TEST_CASE("a palette's rows come nearer to the harmonics the more there are") {
     CHECK(before < 1e-9);  // each has its own entry
 }
 
-TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute within its quantum, along a curve through the scene") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "writing and reading back keeps every attribute within its quantum, along a curve through the scene") {
     for (const int degree : {0, 1, 3}) {
         CAPTURE(degree);
         const Scene scene = randomScene(degree, 5000);
@@ -113,12 +124,15 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
         for (std::size_t i = 0; i < scene.size(); ++i) {
             const std::size_t from = order[i];
             for (int axis = 0; axis < 3; ++axis) {
-                const float step = (1.0f + std::abs(scene.positions[from][axis])) * 2.0f * std::log1p(axis == 2 ? 50.0f : 3.0f) / 65535.0f;
-                position = std::max(position, std::abs(scene.positions[from][axis] - back.positions[i][axis]) / step);
+                const float step = (1.0f + std::abs(scene.positions[from][axis])) * 2.0f *
+                                   std::log1p(axis == 2 ? 50.0f : 3.0f) / 65535.0f;
+                position = std::max(position,
+                                    std::abs(scene.positions[from][axis] - back.positions[i][axis]) / step);
             }
             opacity = std::max(opacity, std::abs(scene.opacities[from] - back.opacities[i]));
             const double longest = std::max(scene.scales[from].x, scene.scales[from].y);
-            shape = std::max(shape, largest(covarianceOf(scene, from) - covarianceOf(back, i)) / (longest * longest));
+            shape = std::max(
+                shape, largest(covarianceOf(scene, from) - covarianceOf(back, i)) / (longest * longest));
         }
         const auto [colour, sh] = shDifferences(scene, back, order);
         CHECK(position < 0.6f);
@@ -134,7 +148,9 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "discs stay discs, antialiased Gaussians stay so, and scales without extent, whatever the others are") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "discs stay discs, antialiased Gaussians stay so, and scales without extent, whatever the others are") {
     LoadNotes notes;
     CHECK_FALSE(throughSog(folder, randomScene(0, 100, false), &notes).isGaussian3d());
     CHECK_FALSE(notes.three_scales);
@@ -170,7 +186,9 @@ TEST_CASE_FIXTURE(InFolder, "scenes of no splat, one, on one plane and far away 
     }
 }
 
-TEST_CASE("whoever waits for a large scene hears how far it is and may stop it; nothing half-written is left, nor what is refused") {
+TEST_CASE(
+    "whoever waits for a large scene hears how far it is and may stop it; nothing half-written is left, nor "
+    "what is refused") {
     const Folder folder;
     const Scene scene = randomScene(1, 3000);
     checkProgress(8, [&](const Progress& progress) {

@@ -13,11 +13,14 @@ std::string repeat(const std::string& row, int count) {
 
 TEST_CASE_FIXTURE(InFolder, "a .splat is read row by row, whatever its name") {
     LoadNotes notes;
-    const std::string turned = splatRow({-4, 5, -6}, {0.125f, 0.5f, 0.25f}, {0, 255, 102, 255, 218, 38, 128, 128});
+    const std::string turned =
+        splatRow({-4, 5, -6}, {0.125f, 0.5f, 0.25f}, {0, 255, 102, 255, 218, 38, 128, 128});
     const Scene scene = loadScene(folder.write("scene.bin", repeat(kPlain, 300) + turned), 0, &notes);
     REQUIRE(scene.size() == 301);
-    CHECK(these(scene.positions[299], scene.scales[299].x, scene.scales[299].y, scene.opacities[299], scene.rotations[299].w) ==
-          these(glm::vec3(1, 2, 3), doctest::Approx(0.5), doctest::Approx(0.25), doctest::Approx(0.8), doctest::Approx(1.0)));
+    CHECK(these(scene.positions[299], scene.scales[299].x, scene.scales[299].y, scene.opacities[299],
+                scene.rotations[299].w) == these(glm::vec3(1, 2, 3), doctest::Approx(0.5),
+                                                 doctest::Approx(0.25), doctest::Approx(0.8),
+                                                 doctest::Approx(1.0)));
     CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 0] == doctest::Approx(1.0));
     CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 2] == doctest::Approx(0.2));
     CHECK(these(scene.positions[300], scene.opacities[300]) == these(glm::vec3(-4, 5, -6), 1.0f));
@@ -29,11 +32,14 @@ TEST_CASE_FIXTURE(InFolder, "a .splat is read row by row, whatever its name") {
     CHECK(scene.sh_degree == 0);
 }
 
-TEST_CASE_FIXTURE(InFolder, "rotations of length 2 are normalised, and those of length zero turn nothing, even in every row") {
+TEST_CASE_FIXTURE(
+    InFolder,
+    "rotations of length 2 are normalised, and those of length zero turn nothing, even in every row") {
     const std::string none = splatRow({1, 2, 3}, {1, 1, 0.5f}, {0, 0, 0, 0, 128, 128, 128, 128}),
                       is_long = splatRow({1, 2, 3}, {1, 1, 0.5f}, {0, 0, 0, 0, 255, 0, 0, 0});
-    for (const auto& [rows, expected] : {std::pair(repeat(none, 20), glm::quat(1.0f, 0.0f, 0.0f, 0.0f)),
-                                         std::pair(repeat(is_long, 20), glm::normalize(glm::quat(127.0f, -128.0f, -128.0f, -128.0f)))}) {
+    for (const auto& [rows, expected] :
+         {std::pair(repeat(none, 20), glm::quat(1.0f, 0.0f, 0.0f, 0.0f)),
+          std::pair(repeat(is_long, 20), glm::normalize(glm::quat(127.0f, -128.0f, -128.0f, -128.0f)))}) {
         const auto [notes, scene] = readScene(folder.write("a.splat", rows));
         REQUIRE(scene.size() == 20);
         CHECK(std::abs(glm::dot(scene.rotations[19], expected)) == doctest::Approx(1.0));
@@ -58,15 +64,17 @@ TEST_CASE_FIXTURE(InFolder, "a .splat that ends within a splat says so") {
         if (length % 32 == 0 && length > 0) {
             CHECK(message.empty());
         } else {
-            const std::string place = fmt::format("data: ends in splat {}: {} bytes, expected 32 per splat", length / 32, length);
+            const std::string place =
+                fmt::format("data: ends in splat {}: {} bytes, expected 32 per splat", length / 32, length);
             CHECK(contains(message, "broken.ply: " + (length > 32 ? place : "")));
         }
     }
 }
 
 TEST_CASE_FIXTURE(InFolder, "other files are not taken for a .splat") {
-    for (const std::string& bytes : {std::string(64, '\0'), std::string(96, '\xff'), repeat("0123456789abcdefghijklmnopqrstuv", 40),
-                                     repeat("{\"a\": [0.5, 0.25, 0.125, 1.0]}\n ", 40)}) {
+    for (const std::string& bytes :
+         {std::string(64, '\0'), std::string(96, '\xff'), repeat("0123456789abcdefghijklmnopqrstuv", 40),
+          repeat("{\"a\": [0.5, 0.25, 0.125, 1.0]}\n ", 40)}) {
         CHECK(contains(loadError(folder, bytes), "not a scene file"));
     }
 }

@@ -18,7 +18,9 @@ struct SpzText {
 
     [[nodiscard]] std::string bytes() const {
         std::string text = "NGSP" + littleWord(version) + littleWord(splats);
-        for (const int value : {sh_degree, fractional_bits, flags, 0}) { text.push_back(static_cast<char>(value)); }
+        for (const int value : {sh_degree, fractional_bits, flags, 0}) {
+            text.push_back(static_cast<char>(value));
+        }
         for (const int value : positions) { text += littleWord(static_cast<std::uint32_t>(value), 3); }
         for (const auto& column : {alphas, colours, scales, rotations, sh}) {
             for (const int value : column) { text.push_back(static_cast<char>(value)); }
@@ -29,7 +31,17 @@ struct SpzText {
 
 // Two splats of SH degree 1.
 inline SpzText makeSpz(std::uint32_t version) {
-    SpzText spz{version, 2, 1, 8, 0, {256, -512, 128, 0, 1, -1}, {255, 51}, {0, 255, 128, 10, 20, 30}, {160, 176, 32, 0, 255, 160}, {}, {}};
+    SpzText spz{version,
+                2,
+                1,
+                8,
+                0,
+                {256, -512, 128, 0, 1, -1},
+                {255, 51},
+                {0, 255, 128, 10, 20, 30},
+                {160, 176, 32, 0, 255, 160},
+                {},
+                {}};
     if (version == 2) {
         spz.rotations = {128, 128, 128, 255, 128, 128};  // almost no turn; half a turn about x
     } else {
@@ -44,7 +56,8 @@ inline SpzText makeSpz(std::uint32_t version) {
 inline std::string makeSpzContainer(const SpzText& spz, const std::string& extension = "") {
     const std::string plain = spz.bytes();
     std::string table, data;
-    const std::size_t sizes[] = {9u * spz.splats, spz.splats, 3u * spz.splats, 3u * spz.splats, 4u * spz.splats, spz.sh.size()};
+    const std::size_t sizes[] = {9u * spz.splats, spz.splats,      3u * spz.splats,
+                                 3u * spz.splats, 4u * spz.splats, spz.sh.size()};
     char streams = 0;
     std::size_t at = 16;
     for (const std::size_t size : sizes) {
@@ -56,7 +69,8 @@ inline std::string makeSpzContainer(const SpzText& spz, const std::string& exten
         at += size;
         ++streams;
     }
-    return plain.substr(0, 15) + streams + littleWord(32 + extension.size()) + std::string(12, '\0') + extension + table + data;
+    return plain.substr(0, 15) + streams + littleWord(32 + extension.size()) + std::string(12, '\0') +
+           extension + table + data;
 }
 
 // One record of an extension.
@@ -65,6 +79,8 @@ inline std::string spzRecord(std::uint32_t type, const std::string& content) {
 }
 
 // The record that names the axes.
-inline std::string spzAxesRecord(int system) { return spzRecord(0xadbe0003u, std::string{static_cast<char>(system), '\0', '\0', '\0'}); }
+inline std::string spzAxesRecord(int system) {
+    return spzRecord(0xadbe0003u, std::string{static_cast<char>(system), '\0', '\0', '\0'});
+}
 
 }  // namespace binosplat::test

@@ -24,11 +24,14 @@ TEST_CASE_FIXTURE(InFolder, "both versions give what their bytes mean, in axes r
         REQUIRE(scene.size() == 2);
         CHECK(scene.positions[0] == glm::vec3(1.0f, 2.0f, -0.5f));  // 8 fractional bits; y and z turned
         CHECK(these(scene.positions[1], scene.opacities[0], scene.opacities[1], scene.sh[0]) ==
-              these(glm::vec3(0.0f, -1.0f / 256.0f, 1.0f / 256.0f), 1.0f, doctest::Approx(0.2), doctest::Approx(-0.5 / 0.15)));
-        CHECK(these(scene.sh[1], scene.sh[2]) == these(doctest::Approx(0.5 / 0.15), doctest::Approx((128.0 / 255.0 - 0.5) / 0.15)));
+              these(glm::vec3(0.0f, -1.0f / 256.0f, 1.0f / 256.0f), 1.0f, doctest::Approx(0.2),
+                    doctest::Approx(-0.5 / 0.15)));
+        CHECK(these(scene.sh[1], scene.sh[2]) ==
+              these(doctest::Approx(0.5 / 0.15), doctest::Approx((128.0 / 255.0 - 0.5) / 0.15)));
         // Scales exp(0), exp(1), exp(-8); then exp(-10), exp(5.9375), exp(0): z and x are dropped.
         CHECK(these(scene.scales[0].x, scene.scales[0].y, scene.scales[1].x, scene.scales[1].y) ==
-              these(doctest::Approx(1.0), doctest::Approx(std::exp(1.0)), doctest::Approx(std::exp(5.9375)), doctest::Approx(1.0)));
+              these(doctest::Approx(1.0), doctest::Approx(std::exp(1.0)), doctest::Approx(std::exp(5.9375)),
+                    doctest::Approx(1.0)));
         REQUIRE(scene.sh_degree == 1);
         for (int i = 0; i < 9; ++i) {
             const float stored = static_cast<float>(4 * i) / 128.0f;
@@ -40,14 +43,17 @@ TEST_CASE_FIXTURE(InFolder, "both versions give what their bytes mean, in axes r
         const glm::vec3 normal = scene.rotations[1] * glm::vec3(0, 0, 1);
         const float x = version == 2 ? 1.0f : -256.0f / 511.0f * 0.70710678f;
         const glm::vec3 stored_axis =
-            glm::normalize(version == 2 ? glm::quat(0, 1, 0, 0) : glm::quat(0, x, 0, std::sqrt(1 - x * x))) * glm::vec3(1, 0, 0);
+            glm::normalize(version == 2 ? glm::quat(0, 1, 0, 0) : glm::quat(0, x, 0, std::sqrt(1 - x * x))) *
+            glm::vec3(1, 0, 0);
         const glm::vec3 expected(stored_axis.x, -stored_axis.y, -stored_axis.z);
         CHECK(std::abs(glm::dot(normal, expected)) == doctest::Approx(1.0).epsilon(1e-4));
         CHECK(notes.three_scales);
     }
 }
 
-TEST_CASE("every version is read without gzip, too, whatever follows, and a container of version 4 with extensions or not") {
+TEST_CASE(
+    "every version is read without gzip, too, whatever follows, and a container of version 4 with extensions "
+    "or not") {
     const Folder folder;
     for (const std::uint32_t version : {2u, 3u}) {
         const std::string bytes = makeSpz(version).bytes();
@@ -81,19 +87,24 @@ TEST_CASE_FIXTURE(InFolder, "the axes that an extension names are honoured: plac
     for (int system = 1; system <= 16; ++system) {
         const std::string& name = names[system];
         CAPTURE(name);
-        const glm::dmat3 ours_from_file(directions.at(name[0]), directions.at(name[1]), directions.at(name[2]));
+        const glm::dmat3 ours_from_file(directions.at(name[0]), directions.at(name[1]),
+                                        directions.at(name[2]));
         LoadNotes notes;
-        const Scene scene = loadBytes(folder, makeSpzContainer(spz, spzRecord(7, "someone else's") + spzAxesRecord(system)), &notes);
+        const Scene scene = loadBytes(
+            folder, makeSpzContainer(spz, spzRecord(7, "someone else's") + spzAxesRecord(system)), &notes);
         CHECK(contains(notes.axes, "-handed (named by the file)"));
         CHECK(scene.vertical_axis == 1);
         CHECK(contains(notes.axes, glm::determinant(ours_from_file) > 0.0 ? "right-handed" : "left-handed"));
         for (std::size_t i = 0; i < 2; ++i) {
-            CHECK(glm::distance(glm::dvec3(scene.positions[i]), ours_from_file * glm::dvec3(stored.positions[i])) < 1e-6);
-            const glm::dmat3 expected = ours_from_file * covarianceOf(stored, i) * glm::transpose(ours_from_file);
+            CHECK(glm::distance(glm::dvec3(scene.positions[i]),
+                                ours_from_file * glm::dvec3(stored.positions[i])) < 1e-6);
+            const glm::dmat3 expected =
+                ours_from_file * covarianceOf(stored, i) * glm::transpose(ours_from_file);
             const glm::dvec3 scales(stored.scales[i], stored.thicknesses[i]);
             CHECK(largest(expected - covarianceOf(scene, i)) < 1e-5 * glm::dot(scales, scales));
             const glm::dvec3 before = reference::evaluateHarmonics(stored.sh.data() + 48 * i, 3, direction),
-                             after = reference::evaluateHarmonics(scene.sh.data() + 48 * i, 3, ours_from_file * direction);
+                             after = reference::evaluateHarmonics(scene.sh.data() + 48 * i, 3,
+                                                                  ours_from_file * direction);
             CHECK(glm::distance(before, after) < 1e-5);
         }
     }
@@ -107,15 +118,18 @@ TEST_CASE_FIXTURE(InFolder, "files that name no axes, or unknown ones, are right
     CHECK(usual.vertical_axis == -1);
     spz.flags = 2;
     checkSameScene(usual, loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(4))));
-    CHECK(loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(6))).positions[0] == glm::vec3(1.0f, -2.0f, 0.5f));
+    CHECK(loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(6))).positions[0] ==
+          glm::vec3(1.0f, -2.0f, 0.5f));
     spz.version = 4;
-    for (const std::string& records : {std::string(), spzAxesRecord(0), spzAxesRecord(4), spzRecord(0xadbe0003u, "abc"),
-                                       spzAxesRecord(6).substr(0, 10), spzRecord(0xadbe0003u, "").substr(0, 4) + std::string(8, '\xff')}) {
+    for (const std::string& records :
+         {std::string(), spzAxesRecord(0), spzAxesRecord(4), spzRecord(0xadbe0003u, "abc"),
+          spzAxesRecord(6).substr(0, 10), spzRecord(0xadbe0003u, "").substr(0, 4) + std::string(8, '\xff')}) {
         checkSameScene(usual, loadBytes(folder, makeSpzContainer(spz, records), &notes));
         CHECK(notes.lines.empty());
     }
     checkSameScene(usual, loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(17)), &notes));
-    checkSays(notes.lines, "names axes 17, which are not known; taken as x right, y up, z back; right-handed");
+    checkSays(notes.lines,
+              "names axes 17, which are not known; taken as x right, y up, z back; right-handed");
     (void)loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(16)), &notes);
     CHECK(notes.axes == "x right, y front, z up; right-handed (named by the file)");
     spz.flags = 0;  // without the flag, these are not records
@@ -178,7 +192,9 @@ TEST_CASE_FIXTURE(InFolder, "whoever waits for a large scene hears how much is u
     SpzText spz;
     spz.splats = kSplats;
     // A stream that compresses too well is refused.
-    for (std::uint32_t i = 0; i < 3 * kSplats; ++i) { spz.positions.push_back(static_cast<int>(i * 2654435761u >> 8)); }
+    for (std::uint32_t i = 0; i < 3 * kSplats; ++i) {
+        spz.positions.push_back(static_cast<int>(i * 2654435761u >> 8));
+    }
     spz.alphas.assign(kSplats, 200);
     spz.rotations.assign(4 * kSplats, 200);
     spz.colours = spz.scales = std::vector<int>(3 * kSplats, 128);
@@ -198,7 +214,8 @@ TEST_CASE_FIXTURE(InFolder, "whoever waits for a large scene hears how much is u
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "SH of degree 4 are left out with a note; bytes behind the splats do not matter") {
+TEST_CASE_FIXTURE(InFolder,
+                  "SH of degree 4 are left out with a note; bytes behind the splats do not matter") {
     SpzText spz = makeSpz(3);
     spz.sh_degree = 4;
     spz.sh.assign(2 * 72, 130);
@@ -215,13 +232,15 @@ TEST_CASE_FIXTURE(InFolder, "an SPZ that does not fit is named") {
     const auto errorWith = [&](auto SpzText::*key, auto value, bool in_gzip = true) {
         SpzText broken = spz;
         broken.*key = value;
-        const std::string message = loadError(folder, in_gzip ? gzip(broken.bytes()) : makeSpzContainer(broken));
+        const std::string message =
+            loadError(folder, in_gzip ? gzip(broken.bytes()) : makeSpzContainer(broken));
         CHECK(contains(message, "broken.ply: "));
         return message;
     };
     CHECK(contains(errorWith(&SpzText::version, 1u), "SPZ version 1 within gzip"));
     CHECK(contains(errorWith(&SpzText::version, 4u), "SPZ version 4 within gzip"));
-    CHECK(contains(errorWith(&SpzText::version, 5u, false), "SPZ version 5 without gzip, expected 2 or 3, or 4 without gzip"));
+    CHECK(contains(errorWith(&SpzText::version, 5u, false),
+                   "SPZ version 5 without gzip, expected 2 or 3, or 4 without gzip"));
     CHECK(contains(errorWith(&SpzText::sh_degree, 5), "SH degree 5"));
     CHECK(contains(errorWith(&SpzText::fractional_bits, 24), "24 fractional bits"));
     CHECK(contains(errorWith(&SpzText::splats, 3u), "data: ends after"));
@@ -236,8 +255,10 @@ TEST_CASE_FIXTURE(InFolder, "an SPZ that does not fit is named") {
     }
     // Streams made to fill the memory.
     spz.splats = 200'000;
-    CHECK(contains(loadError(folder, gzip(spz.bytes() + std::string(5'800'000, '\x7f'))), "expected fewer than 256 per byte"));
-    CHECK(contains(loadError(folder, gzip(makeSpz(3).bytes() + std::string(5'800'000, '\0'))), "and more behind the last splat"));
+    CHECK(contains(loadError(folder, gzip(spz.bytes() + std::string(5'800'000, '\x7f'))),
+                   "expected fewer than 256 per byte"));
+    CHECK(contains(loadError(folder, gzip(makeSpz(3).bytes() + std::string(5'800'000, '\0'))),
+                   "and more behind the last splat"));
 }
 
 TEST_CASE_FIXTURE(InFolder, "a container that does not fit is named") {

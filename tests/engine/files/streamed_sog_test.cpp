@@ -29,16 +29,21 @@ void addSplats(Scene& whole, const Scene& part, std::size_t first, std::size_t c
     addTo(whole.scales, part.scales);
     addTo(whole.thicknesses, part.thicknesses);
     addTo(whole.opacities, part.opacities);
-    const auto width = [](const Scene& scene) { return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)); };
+    const auto width = [](const Scene& scene) {
+        return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
+    };
     for (std::size_t splat = first; splat < first + count; ++splat) {
-        for (std::size_t i = 0; i < width(whole); ++i) { whole.sh.push_back(i < width(part) ? part.sh[splat * width(part) + i] : 0.0f); }
+        for (std::size_t i = 0; i < width(whole); ++i) {
+            whole.sh.push_back(i < width(part) ? part.sh[splat * width(part) + i] : 0.0f);
+        }
     }
 }
 
 void addWhole(Scene& whole, const Scene& part) { addSplats(whole, part, 0, part.size()); }
 
 TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the environment behind") {
-    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
+    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"),
+                env = loadScene(source + "/env");
     REQUIRE(a.positions[0] != b.positions[0]);
     REQUIRE(a.sh_degree == 1);
     REQUIRE(b.sh_degree == 0);
@@ -64,7 +69,8 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
     for (const Scene* part : {&c, &env}) { addWhole(coarse, *part); }
     checkSameScene(loadLevel(source, 1, &notes), coarse);
     CHECK(notes.level == 1);
-    CHECK(contains(notes.lines.back(), "level of detail 1 of 0 (the finest) to 1; 1 of 3 leaves have no splats at this level"));
+    CHECK(contains(notes.lines.back(),
+                   "level of detail 1 of 0 (the finest) to 1; 1 of 3 leaves have no splats at this level"));
     CHECK_THROWS_AS(loadLevel(source, 0), Error);
 }
 
@@ -74,19 +80,23 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
         const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
         std::string leaves = fmt::format("{}:", meta.leaves);
         for (const LodLeaf& leaf : meta.tree) {
-            leaves += fmt::format(" ({},{},{} to {},{},{}", leaf.low.x, leaf.low.y, leaf.low.z, leaf.high.x, leaf.high.y, leaf.high.z);
+            leaves += fmt::format(" ({},{},{} to {},{},{}", leaf.low.x, leaf.low.y, leaf.low.z, leaf.high.x,
+                                  leaf.high.y, leaf.high.z);
             for (const auto& [level, file, splats] : leaf.levels) {
                 leaves += fmt::format("; {}: {} from {} of {}", level, splats.count, splats.first, file);
             }
             leaves += ")";
-            CHECK(leaf.errors == (meta.has_errors ? std::vector<float>(leaf.levels.size() == 2 ? std::initializer_list<float>{0.0f, 0.5f}
-                                                                                               : std::initializer_list<float>{0.0f})
-                                                  : std::vector<float>()));
+            CHECK(leaf.errors ==
+                  (meta.has_errors
+                       ? std::vector<float>(leaf.levels.size() == 2 ? std::initializer_list<float>{0.0f, 0.5f}
+                                                                    : std::initializer_list<float>{0.0f})
+                       : std::vector<float>()));
         }
         return leaves;
     };
     const std::string two =
-        "3: (-1,-2,0 to 1,0.5,2; 0: 3 from 5 of 0; 1: 6 from 0 of 2) (-1,-2,0 to 1,0.5,2; 0: 5 from 0 of 0; 1: 2 from 6 of 2)";
+        "3: (-1,-2,0 to 1,0.5,2; 0: 3 from 5 of 0; 1: 6 from 0 of 2) (-1,-2,0 to 1,0.5,2; 0: 5 from 0 of 0; "
+        "1: 2 from 6 of 2)";
     CHECK(told(makeLodMeta()) == two + " (-1,-2,0 to 1,0.5,2; 0: 8 from 0 of 1)");
     // A writer that has not measured the levels' errors says so, or leaves the field out.
     for (const char* without : {"", R"("lodErrors":false,)"}) {
@@ -96,12 +106,15 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
     CHECK(told(replaced(makeLodMeta(), R"({"0":{"file":1,"offset":0,"count":8}})", "{}")) == two);
 }
 
-TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if it has one; without its environment a scene is shown, too") {
+TEST_CASE(
+    "a leaf that has no splats at a level shows the next coarser one, if it has one; without its environment "
+    "a scene is shown, too") {
     const Folder folder;
     // The first leaf has only level 1; the third, as before, has only level 0.
     const std::string less = replaced(makeLodMeta(), R"("0":{"file":0,"offset":5,"count":3},)", "");
     const std::string source = writeStreamed(folder, "scene", less);
-    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
+    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"),
+                env = loadScene(source + "/env");
     Scene expected;
     expected.sh_degree = 1;
     addSplats(expected, a, 0, 5);
@@ -112,7 +125,8 @@ TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if i
     LoadNotes notes;
     checkSameScene(loadLevel(source, 0, &notes), with_environment);
     CHECK(notes.level_splats == std::vector<std::uint64_t>{19, 8});
-    CHECK(contains(notes.lines.back(), "; 1 of 3 leaves have no splats at this level, 1 of them show a coarser one"));
+    CHECK(contains(notes.lines.back(),
+                   "; 1 of 3 leaves have no splats at this level, 1 of them show a coarser one"));
     CHECK(loadLevel(source, 1).size() == 16);
 
     std::filesystem::remove_all(source + "/env");
@@ -124,7 +138,8 @@ TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if i
 
 TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
     const Scene fine = loadLevel(source, 0), coarse = loadLevel(source, 1);
-    for (const std::vector<std::string>& bundles : {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
+    for (const std::vector<std::string>& bundles :
+         {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
         (void)writeStreamed(folder, "scene", makeLodMeta(), bundles);
         LoadNotes notes;
         checkSameScene(loadLevel(source, 0, &notes), fine);
@@ -148,13 +163,16 @@ TEST_CASE("a scene may have more bundles than a program may have open files") {
     for (int i = 0; i < kChunks; ++i) {
         (void)folder.write(fmt::format("{}.sog", i), makeZip(makeChunk(2)));
         names += fmt::format("{}\"{}.sog\"", i == 0 ? "" : ",", i);
-        leaves += fmt::format(R"({}{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"lods":{{"0":{{"file":{},"offset":0,"count":8}}}}}})",
-                              i == 0 ? "" : ",", i);
+        leaves +=
+            fmt::format(R"({}{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"lods":{{"0":{{"file":{},"offset":0,)"
+                        R"("count":8}}}}}})",
+                        i == 0 ? "" : ",", i);
     }
     (void)folder.write(
         "lod-meta.json",
-        fmt::format(R"({{"lodLevels":1,"filenames":[{}],"tree":{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"children":[{}]}}}})", names,
-                    leaves));
+        fmt::format(R"({{"lodLevels":1,"filenames":[{}],"tree":{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},)"
+                    R"("children":[{}]}}}})",
+                    names, leaves));
     rlimit before{};
     REQUIRE(getrlimit(RLIMIT_NOFILE, &before) == 0);
     const rlimit few{64, before.rlim_max};
@@ -172,7 +190,9 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
     meta = replaced(meta, R"("offset":0,"count":5)", R"("offset":2,"count":3)");
     const std::string source = writeStreamed(folder, "scene", meta);
     const Scene a = loadScene(source + "/a");
-    (void)folder.write("scene/a/q.webp", makeNine([](int i) { return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4}; }));
+    (void)folder.write("scene/a/q.webp", makeNine([](int i) {
+                           return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4};
+                       }));
 
     Scene expected;
     expected.sh_degree = 1;
@@ -183,12 +203,16 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
     CHECK(these(notes.skipped_zero_rotation, notes.splats_in_file) == these(1, 20));
 }
 
-TEST_CASE("files of the first writers, without version, counts and environment, are read; progress runs from 0 to 1 over all chunks") {
+TEST_CASE(
+    "files of the first writers, without version, counts and environment, are read; progress runs from 0 to "
+    "1 over all chunks") {
     const Folder folder;
     std::vector<double> shares;
-    (void)loadScene(writeStreamed(folder, "scene", makeLodMeta()), 0, nullptr, [&](double share) { shares.push_back(share); });
+    (void)loadScene(writeStreamed(folder, "scene", makeLodMeta()), 0, nullptr,
+                    [&](double share) { shares.push_back(share); });
     CHECK(shares == std::vector<double>{0.0, 0.0, 8.0 / 24, 16.0 / 24, 1.0});
-    std::string meta = replaced(makeLodMeta(), R"("version":1,"asset":{"generator":"a test"},"count":24,"counts":[16,8],)", "");
+    std::string meta = replaced(
+        makeLodMeta(), R"("version":1,"asset":{"generator":"a test"},"count":24,"counts":[16,8],)", "");
     meta = replaced(meta, R"("lodErrors":true,"environment":"env/meta.json")", R"("environment":null)");
     CHECK(loadScene(writeStreamed(folder, "scene", meta)).size() == 16);
 }
@@ -204,7 +228,8 @@ TEST_CASE_FIXTURE(Streamed, "the finest level that fits is chosen, or the coarse
         };
         const Scene scene = loadScene(source, 0, &notes, {}, {std::nullopt, fits});
         CHECK(scene.size() == (notes.level == 0 ? 24 : 16));
-        CHECK(contains(notes.lines.back(), "the finest that fits the memory limit") == (notes.level == 1 && most > 0));
+        CHECK(contains(notes.lines.back(), "the finest that fits the memory limit") ==
+              (notes.level == 1 && most > 0));
         CHECK(contains(notes.lines.back(), "as none fits the memory limit") == (most == 0));
         return notes.level;
     };
@@ -214,11 +239,17 @@ TEST_CASE_FIXTURE(Streamed, "the finest level that fits is chosen, or the coarse
 }
 
 TEST_CASE_FIXTURE(Streamed, "a level that a scene does not have is refused") {
-    const auto errorAt = [](const std::string& scene, std::uint32_t level) { return errorOf([&] { (void)loadLevel(scene, level); }); };
-    CHECK(contains(errorAt(source, 2), "scene/lod-meta.json: lod is 2, expected one of the scene's levels of detail, 0 (the finest) to 1"));
+    const auto errorAt = [](const std::string& scene, std::uint32_t level) {
+        return errorOf([&] { (void)loadLevel(scene, level); });
+    };
+    CHECK(contains(
+        errorAt(source, 2),
+        "scene/lod-meta.json: lod is 2, expected one of the scene's levels of detail, 0 (the finest) to 1"));
     CHECK(contains(errorAt(source, 0xffffffff), "lod is 4294967295"));
-    CHECK(contains(errorAt(source + "/a", 0), "a: lod is 0, but a scene of this kind (SOG (directory)) has no levels of detail"));
-    CHECK(contains(errorAt("builtin:one-splat", 1), "builtin:one-splat: lod is 1, but a scene of this kind (built-in)"));
+    CHECK(contains(errorAt(source + "/a", 0),
+                   "a: lod is 0, but a scene of this kind (SOG (directory)) has no levels of detail"));
+    CHECK(contains(errorAt("builtin:one-splat", 1),
+                   "builtin:one-splat: lod is 1, but a scene of this kind (built-in)"));
 }
 
 SCRIPT(streamed_sog, "engine/files/streamed_sog") {
@@ -243,8 +274,10 @@ TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that is none, is cut off or lies to
     CHECK(contains(loadMeta(makeLodMeta().substr(0, 300)), "expected the levels of a streamed SOG scene"));
     CHECK(contains(loadMeta("[]"), "is array, expected an object"));
     CHECK(contains(loadMeta("{}"), "has no lodLevels, expected one"));
-    CHECK(contains(loadMeta(R"({"lodLevels":1,"filenames":[],"tree":{"bound":{"min":[0,0,0],"max":[0,0,0]},"children":[]}})"),
-                   "tree.children: is empty"));
+    CHECK(contains(
+        loadMeta(
+            R"({"lodLevels":1,"filenames":[],"tree":{"bound":{"min":[0,0,0],"max":[0,0,0]},"children":[]}})"),
+        "tree.children: is empty"));
     const auto nest = [](int nodes) {
         std::string meta = R"({"lodLevels":1,"filenames":["a/meta.json"],"tree":)";
         for (int i = 1; i < nodes; ++i) { meta += R"({"bound":{"min":[0,0,0],"max":[1,1,1]},"children":[)"; }
@@ -282,7 +315,8 @@ TEST_CASE_FIXTURE(Streamed, "chunks that are missing or broken are named before 
     const std::string meta = makeSog().at("meta.json");
     const auto error = [&] {
         std::vector<double> shares;
-        const std::string message = errorOf([&] { (void)loadScene(source, 0, nullptr, [&](double share) { shares.push_back(share); }); });
+        const std::string message = errorOf(
+            [&] { (void)loadScene(source, 0, nullptr, [&](double share) { shares.push_back(share); }); });
         CHECK(shares == std::vector<double>{0.0});
         return message;
     };

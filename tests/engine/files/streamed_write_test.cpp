@@ -11,7 +11,9 @@ SUITE(streamed_write) {
 std::map<std::string, std::string> filesIn(const std::filesystem::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file()) { files[entry.path().lexically_relative(folder).generic_string()] = textIn(entry.path()); }
+        if (entry.is_regular_file()) {
+            files[entry.path().lexically_relative(folder).generic_string()] = textIn(entry.path());
+        }
     }
     return files;
 }
@@ -23,14 +25,17 @@ std::vector<float> sortedX(const Scene& scene) {
     return values;
 }
 
-TEST_CASE("levels are written that read back whole, the same bytes every time; a folder that is cancelled or taken is left as it was") {
+TEST_CASE(
+    "levels are written that read back whole, the same bytes every time; a folder that is cancelled or taken "
+    "is left as it was") {
     const Folder folder;
     const Scene scene = makeBuiltin("builtin:slanted-wall");
     std::vector<std::uint32_t> half;
     for (std::uint32_t splat = 0; splat < scene.size(); splat += 2) { half.push_back(splat); }
     const Scene coarse = pickSplats(scene, half);
     const auto write = [&](const std::string& name, const Progress& progress = {}) {
-        StreamedWriter writer(folder.file(name) + "/lod-meta.json", {.chunk_splats = 700, .leaf_splats = 250});
+        StreamedWriter writer(folder.file(name) + "/lod-meta.json",
+                              {.chunk_splats = 700, .leaf_splats = 250});
         writer.cutLeaves(scene.positions);
         writer.add(0, scene, {}, 0, progress);
         writer.add(1, coarse);
@@ -40,36 +45,47 @@ TEST_CASE("levels are written that read back whole, the same bytes every time; a
     write("b");
     const auto files = filesIn(folder.file("a"));
     CHECK(these(files, files.contains("0_2/meta.json")) == these(filesIn(folder.file("b")), true));
-    CHECK(files.at("lod-meta.json")
-              .starts_with(
-                  R"({"version":1,"asset":{"generator":"binosplat"},"count":2522,"counts":[1681,841],"lodLevels":2,"lodErrors":false,)"));
+    CHECK(
+        files.at("lod-meta.json")
+            .starts_with(R"({"version":1,"asset":{"generator":"binosplat"},"count":2522,"counts":[1681,841],)"
+                         R"("lodLevels":2,"lodErrors":false,)"));
     for (const auto& [level, whole] : {std::pair(0u, &scene), std::pair(1u, &coarse)}) {
-        const std::vector<float> back = sortedX(loadScene(folder.file("a"), 0, nullptr, {}, {level, {}})), expected = sortedX(*whole);
+        const std::vector<float> back = sortedX(loadScene(folder.file("a"), 0, nullptr, {}, {level, {}})),
+                                 expected = sortedX(*whole);
         REQUIRE(back.size() == expected.size());
         for (std::size_t i = 0; i < back.size(); ++i) { CHECK(std::abs(back[i] - expected[i]) < 1e-3f); }
     }
     CHECK_THROWS(write("c", [](double) { throw std::runtime_error("cancelled"); }));
-    CHECK_THROWS_WITH_AS(write("a"), (folder.file("a") + ": is there already, must be absent or empty").c_str(), Error);
+    CHECK_THROWS_WITH_AS(write("a"),
+                         (folder.file("a") + ": is there already, must be absent or empty").c_str(), Error);
     CHECK(filesIn(folder.file("")).size() == 2 * files.size());
 }
 
-TEST_CASE("what levels are off by is written for each leaf: it adds up, never falls, and is the level's mean where nobody looked") {
+TEST_CASE(
+    "what levels are off by is written for each leaf: it adds up, never falls, and is the level's mean where "
+    "nobody looked") {
     const Folder folder;
     Scene scene = makeBuiltin("builtin:slanted-wall");
-    for (std::size_t i = 0; i < scene.size(); ++i) { scene.positions[i] = glm::vec3(static_cast<float>(i), 0.0f, 0.0f); }
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        scene.positions[i] = glm::vec3(static_cast<float>(i), 0.0f, 0.0f);
+    }
     const float cut = scene.positions[scene.size() / 2].x;
     StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = scene.size() / 2 + 1});
     writer.cutLeaves(scene.positions);
     writer.add(0, scene);
     const auto sees = [&](double weight, double left, double right) {
         std::vector<SplatError> errors;
-        for (const glm::vec3& p : scene.positions) { errors.push_back({weight, weight * (p.x < cut ? left : right)}); }
+        for (const glm::vec3& p : scene.positions) {
+            errors.push_back({weight, weight * (p.x < cut ? left : right)});
+        }
         return errors;
     };
     writer.add(1, scene, sees(2.0, 0.25, 0.5));
     writer.add(2, scene, sees(1.0, 0.125, 0.25), 1);
     std::vector<SplatError> half = sees(1.0, 0.125, 1.0);
-    for (std::size_t i = 0; i < half.size(); ++i) { half[i] = scene.positions[i].x < cut ? half[i] : SplatError{}; }
+    for (std::size_t i = 0; i < half.size(); ++i) {
+        half[i] = scene.positions[i].x < cut ? half[i] : SplatError{};
+    }
     writer.add(3, scene, half);
     writer.finish();
     const std::string text = textIn(folder.file("a") + "/lod-meta.json");
@@ -77,11 +93,14 @@ TEST_CASE("what levels are off by is written for each leaf: it adds up, never fa
     REQUIRE(these(meta.has_errors, meta.tree.size()) == these(true, 2u));
     for (const LodLeaf& leaf : meta.tree) {
         const bool is_left = leaf.low.x < 0.0f;
-        CHECK(leaf.errors == (is_left ? std::vector{0.0f, 0.25f, 0.375f, 0.375f} : std::vector{0.0f, 0.5f, 0.75f, 0.75f}));
+        CHECK(leaf.errors ==
+              (is_left ? std::vector{0.0f, 0.25f, 0.375f, 0.375f} : std::vector{0.0f, 0.5f, 0.75f, 0.75f}));
     }
 }
 
-TEST_CASE("blocks are whole leaves with each splat in one, no larger than asked for, and levels may be added block by block") {
+TEST_CASE(
+    "blocks are whole leaves with each splat in one, no larger than asked for, and levels may be added block "
+    "by block") {
     const Folder folder;
     const Scene scene = makeBuiltin("builtin:slanted-wall");
     StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = 100});
@@ -98,7 +117,9 @@ TEST_CASE("blocks are whole leaves with each splat in one, no larger than asked 
     CHECK(writer.counts() == std::vector<std::uint64_t>(2, scene.size()));
     writer.finish();
     const std::string text = textIn(folder.file("a") + "/lod-meta.json");
-    for (const LodLeaf& leaf : parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json").tree) { CHECK(leaf.levels.size() == 2); }
+    for (const LodLeaf& leaf : parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json").tree) {
+        CHECK(leaf.levels.size() == 2);
+    }
     CHECK(sortedX(loadScene(folder.file("a"))).size() == scene.size());
 }
 
@@ -117,8 +138,9 @@ TEST_CASE("a scene that waits on the disk comes back as it was, and leaves nothi
         spill.add(0, pickSplats(discs, std::span(all).subspan(middle)));
         for (std::size_t i = 0; i < 2; ++i) {
             const Scene &was = i == 0 ? discs : solids, is = spill.read(i);
-            CHECK(these(is.positions, is.rotations, is.scales, is.thicknesses, is.opacities, is.sh, is.name) ==
-                  these(was.positions, was.rotations, was.scales, was.thicknesses, was.opacities, was.sh, was.name));
+            CHECK(these(is.positions, is.rotations, is.scales, is.thicknesses, is.opacities, is.sh,
+                        is.name) == these(was.positions, was.rotations, was.scales, was.thicknesses,
+                                          was.opacities, was.sh, was.name));
         }
     }
     CHECK(!std::filesystem::exists(folder.file("spill")));

@@ -14,20 +14,26 @@ struct AffiliatedFrame {
     std::vector<std::uint8_t> pixel_classes;
 };
 
-inline AffiliatedFrame makeAffiliated(StereoFrame& frame, const std::array<Eye, 2>& eyes, FrameSettings settings) {
+inline AffiliatedFrame makeAffiliated(StereoFrame& frame, const std::array<Eye, 2>& eyes,
+                                      FrameSettings settings) {
     settings.keep_classes = true;
     FrameResult result = frame.render(eyes, settings);
-    return {std::move(result), {frame.readPicture(kLeft), frame.readPicture(kRight)}, frame.readTileKinds(), frame.readPixelClasses()};
+    return {std::move(result),
+            {frame.readPicture(kLeft), frame.readPicture(kRight)},
+            frame.readTileKinds(),
+            frame.readPixelClasses()};
 }
 
 // A headset's eyes: asymmetric angles, mirrored, with axes turned outwards by `canting_rad`.
 inline std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad, double eye_distance = 0.063) {
     std::array<Eye, 2> eyes = stereoPair(middle, eye_distance);
-    const std::array<ViewAngles, 2> angles{ViewAngles{-0.7, 0.55, 0.6, -0.65}, ViewAngles{-0.55, 0.7, 0.6, -0.65}};
+    const std::array<ViewAngles, 2> angles{ViewAngles{-0.7, 0.55, 0.6, -0.65},
+                                           ViewAngles{-0.55, 0.7, 0.6, -0.65}};
     for (int e = 0; e < 2; ++e) {
         eyes[e].intrinsics = intrinsicsFromAngles(angles[e], eyes[e].size_px);
         const double turn = e == kLeft ? -canting_rad : canting_rad;
-        eyes[e].world_from_camera.orientation = eyes[e].world_from_camera.orientation * glm::angleAxis(turn, glm::dvec3(0, 1, 0));
+        eyes[e].world_from_camera.orientation =
+            eyes[e].world_from_camera.orientation * glm::angleAxis(turn, glm::dvec3(0, 1, 0));
     }
     return eyes;
 }
@@ -38,7 +44,9 @@ inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& ey
     for (std::size_t i = 0; i < scene.size(); ++i) {
         for (const Eye& eye : eyes) {
             const double depth = transform(inverse(eye.world_from_camera), glm::dvec3(scene.positions[i])).z;
-            if (depth - 3.4 * static_cast<double>(std::max(scene.scales[i].x, scene.scales[i].y)) < 0.2) { scene.opacities[i] = 0.0f; }
+            if (depth - 3.4 * static_cast<double>(std::max(scene.scales[i].x, scene.scales[i].y)) < 0.2) {
+                scene.opacities[i] = 0.0f;
+            }
         }
     }
 }
@@ -49,7 +57,8 @@ inline Image keepTiles(Image image, const std::vector<std::uint32_t>& tile_kinds
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
         const std::size_t x = i % image.size_px.x, y = i / image.size_px.x;
         if (tile_kinds[(y / 16) * columns + x / 16] == 0) {
-            std::fill_n(image.values.begin() + static_cast<std::ptrdiff_t>(i) * image.channels, image.channels, 0.0f);
+            std::fill_n(image.values.begin() + static_cast<std::ptrdiff_t>(i) * image.channels,
+                        image.channels, 0.0f);
         }
     }
     return image;

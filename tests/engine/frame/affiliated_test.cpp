@@ -5,7 +5,9 @@
 
 SUITE(affiliated) {
 
-ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
+ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) {
+    return test::viewBuiltin("builtin:atelier", size_px, 20000);
+}
 
 FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     FrameSettings settings;
@@ -26,7 +28,9 @@ FrameSettings makeLetterSettings(Side dominant = kLeft) {
 
 std::vector<FrameSettings> makeReprojecting(Side dominant = kLeft) {
     std::vector<FrameSettings> all{makeLetterSettings(dominant)};
-    for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) { all.push_back(makeSettings(mode, dominant)); }
+    for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
+        all.push_back(makeSettings(mode, dominant));
+    }
     return all;
 }
 
@@ -35,7 +39,9 @@ std::size_t countFlaws(const Image& image) {
     std::size_t flaws = 0;
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
         const float* pixel = &image.values[4 * i];
-        for (int channel = 0; channel < 4; ++channel) { flaws += std::isfinite(pixel[channel]) && pixel[channel] >= 0.0f ? 0 : 1; }
+        for (int channel = 0; channel < 4; ++channel) {
+            flaws += std::isfinite(pixel[channel]) && pixel[channel] >= 0.0f ? 0 : 1;
+        }
         // Before a pixel is written, its bytes hold no alpha near 1: the last channel is an inverse depth.
         flaws += pixel[3] > 0.9f && pixel[3] < 1.1f ? 0 : 1;
         flaws += pixel[0] > pixel[1] + 0.7f && pixel[2] > pixel[1] + 0.7f ? 1 : 0;
@@ -49,39 +55,48 @@ std::size_t countMoved(const AffiliatedFrame& made) {
     std::size_t moved = 0;
     for (std::size_t i = 0; i < made.pictures[kLeft].pixelCount(); ++i) {
         const std::uint32_t kind =
-            made.tile_kinds.empty() ? 0 : made.tile_kinds[i / size_px.x / 16 * ((size_px.x + 15) / 16) + i % size_px.x / 16];
+            made.tile_kinds.empty()
+                ? 0
+                : made.tile_kinds[i / size_px.x / 16 * ((size_px.x + 15) / 16) + i % size_px.x / 16];
         moved += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted ? 1 : 0;
     }
     return moved;
 }
 
-TEST_CASE_FIXTURE(Gpu, "without a distance between the eyes, the other eye's picture is the dominant one's, byte for byte") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "without a distance between the eyes, the other eye's picture is the dominant one's, byte for byte") {
     const ViewedScene view = viewAtelier();
     KeptFrame frame(context(), view.scene);
     for (const gpu::uint depth_choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
         CAPTURE(depth_choice);
         for (FrameSettings settings : makeReprojecting(depth_choice == gpu::kDepthMean ? kRight : kLeft)) {
-            INFO("settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ", settings.stereo.forward);
+            INFO("settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ",
+                 settings.stereo.forward);
             settings.background = {0.1, 0.7, 0.3};
             settings.stereo.depth_choice = depth_choice;
             const AffiliatedFrame made = makeAffiliated(frame, stereoPair(view.eye, 0.0), settings);
             CHECK(made.pictures[kLeft].values == made.pictures[kRight].values);
             // Tiles in which nothing is visible are not worth reprojecting.
             CHECK(countOf(made.result, "pixels_covered") == countMoved(made));
-            CHECK(std::ranges::all_of(made.tile_kinds, [](std::uint32_t kind) { return kind == 0 || kind == gpu::kTileCheap; }));
-            CHECK(countOf(made.result, "tiles_patched") == std::ranges::count(made.tile_kinds, gpu::kTileCheap));
+            CHECK(std::ranges::all_of(
+                made.tile_kinds, [](std::uint32_t kind) { return kind == 0 || kind == gpu::kTileCheap; }));
+            CHECK(countOf(made.result, "tiles_patched") ==
+                  std::ranges::count(made.tile_kinds, gpu::kTileCheap));
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, whatever room its lists begin with") {
+TEST_CASE_FIXTURE(Gpu,
+                  "every mode gives the same bytes from run to run, whatever room its lists begin with") {
     const ViewedScene view = viewAtelier();
     const auto eyes = test::headsetEyes(view.eye, glm::radians(5.0));
     const GpuScene scene(context(), view.scene);
     std::vector<FrameSettings> all = makeReprojecting();
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) { all.push_back(makeSettings(mode)); }
     for (const FrameSettings& settings : all) {
-        INFO("settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ", settings.stereo.forward);
+        INFO("settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ",
+             settings.stereo.forward);
         std::vector<AffiliatedFrame> made;
         std::vector<Image> depths;
         for (const FrameCapacity& first : {FrameOptions{}.first_capacity, FrameCapacity{1, 1}}) {
@@ -92,7 +107,8 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, whateve
             }
         }
         for (std::size_t run = 1; run < made.size(); ++run) {
-            CHECK(these(made[run].pictures[kLeft].values, made[run].pictures[kRight].values, made[run].tile_kinds) ==
+            CHECK(these(made[run].pictures[kLeft].values, made[run].pictures[kRight].values,
+                        made[run].tile_kinds) ==
                   these(made[0].pictures[kLeft].values, made[0].pictures[kRight].values, made[0].tile_kinds));
             CHECK(made[run].pixel_classes == made[0].pixel_classes);
             CHECK(depths[run].values == depths[0].values);
@@ -103,7 +119,9 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, whateve
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, asymmetric and canted eyes, whichever dominates") {
+TEST_CASE_FIXTURE(Gpu,
+                  "every pixel of the other eye is written, with parallel, asymmetric and canted eyes, "
+                  "whichever dominates") {
     const ViewedScene view = viewAtelier({97, 131});
     KeptFrame frame(context(), view.scene);
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
@@ -114,42 +132,52 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
             const Image full = makeAffiliated(frame, eyes, full_settings).pictures[1 - dominant];
             REQUIRE(countFlaws(full) == 0);
             for (FrameSettings settings : makeReprojecting(dominant)) {
-                INFO("canting_rad ", canting_rad, ", dominant ", static_cast<int>(dominant), ", settings.mode ",
-                     static_cast<int>(settings.mode), ", settings.stereo.forward ", settings.stereo.forward);
+                INFO("canting_rad ", canting_rad, ", dominant ", static_cast<int>(dominant),
+                     ", settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ",
+                     settings.stereo.forward);
                 settings.background = full_settings.background;
                 const AffiliatedFrame made = makeAffiliated(frame, eyes, settings);
                 CHECK(countFlaws(made.pictures[1 - dominant]) == 0);
                 const double psnr_db = compare(made.pictures[1 - dominant], full).psnrDb();
                 CHECK(psnr_db >= (settings.mode == Mode::kReproject ? 15.0 : 20.0));
-                CHECK(countOf(made.result, "pixels_covered") + countOf(made.result, "pixels_gap") + countOf(made.result, "pixels_hole") ==
+                CHECK(countOf(made.result, "pixels_covered") + countOf(made.result, "pixels_gap") +
+                          countOf(made.result, "pixels_hole") ==
                       countMoved(made));
             }
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full render, and more budget is never worse") {
+TEST_CASE_FIXTURE(
+    Gpu, "tiles that are rendered again are those of the full render, and more budget is never worse") {
     const ViewedScene view = viewAtelier({192, 192});
     KeptFrame frame(context(), view.scene);
     for (const auto& eyes : {stereoPair(view.eye, 0.063), test::headsetEyes(view.eye, glm::radians(5.0))}) {
         FrameSettings full_settings = makeSettings(Mode::kShared);
         full_settings.keep_both_depths = true;
-        const Image full = makeAffiliated(frame, eyes, full_settings).pictures[kRight], full_depth = frame.readDepth(kRight);
+        const Image full = makeAffiliated(frame, eyes, full_settings).pictures[kRight],
+                    full_depth = frame.readDepth(kRight);
         // Moving odd rows like even ones costs little quality.
-        double before_db = compare(makeAffiliated(frame, eyes, makeSettings(Mode::kReproject)).pictures[kRight], full).psnrDb() - 0.4;
-        for (const auto& [mode, budget] : {std::pair(Mode::kPaper, 0.0), std::pair(Mode::kPredicted, 0.0), std::pair(Mode::kPredicted, 0.2),
-                                           std::pair(Mode::kPredicted, 0.5), std::pair(Mode::kPredicted, 1.0)}) {
+        double before_db =
+            compare(makeAffiliated(frame, eyes, makeSettings(Mode::kReproject)).pictures[kRight], full)
+                .psnrDb() -
+            0.4;
+        for (const auto& [mode, budget] : {std::pair(Mode::kPaper, 0.0), std::pair(Mode::kPredicted, 0.0),
+                                           std::pair(Mode::kPredicted, 0.2), std::pair(Mode::kPredicted, 0.5),
+                                           std::pair(Mode::kPredicted, 1.0)}) {
             INFO("mode ", static_cast<int>(mode), ", budget ", budget);
             FrameSettings settings = makeSettings(mode);
             settings.stereo.budget = budget;
             settings.keep_both_depths = true;
             const AffiliatedFrame made = makeAffiliated(frame, eyes, settings);
             const auto areFull = [&](const Image& picture, const Image& whole) {
-                return test::keepTiles(picture, made.tile_kinds).values == test::keepTiles(whole, made.tile_kinds).values;
+                return test::keepTiles(picture, made.tile_kinds).values ==
+                       test::keepTiles(whole, made.tile_kinds).values;
             };
             CHECK(areFull(made.pictures[kRight], full));
             CHECK(areFull(frame.readDepth(kRight), full_depth));
-            const auto tiles = made.tile_kinds.size() - static_cast<std::size_t>(std::ranges::count(made.tile_kinds, 0u));
+            const auto tiles =
+                made.tile_kinds.size() - static_cast<std::size_t>(std::ranges::count(made.tile_kinds, 0u));
             CHECK(tiles == countOf(made.result, "tiles_patched"));
             if (mode == Mode::kPaper || budget > 0.0) { CHECK(tiles > 0); }
             if (mode == Mode::kPaper) { continue; }
@@ -166,7 +194,9 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "what each eye culls and sorts by itself makes two-pass's tiles, and with parallel eyes shared lists' picture") {
+TEST_CASE_FIXTURE(Gpu,
+                  "what each eye culls and sorts by itself makes two-pass's tiles, and with parallel eyes "
+                  "shared lists' picture") {
     const ViewedScene view = viewAtelier();
     KeptFrame frame(context(), view.scene);
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
@@ -175,11 +205,13 @@ TEST_CASE_FIXTURE(Gpu, "what each eye culls and sorts by itself makes two-pass's
         const Image full = makeAffiliated(frame, eyes, makeSettings(Mode::kTwoPass)).pictures[kRight];
         FrameSettings settings = makeLetterSettings();
         const AffiliatedFrame alone = makeAffiliated(frame, eyes, settings);
-        CHECK(test::keepTiles(alone.pictures[kRight], alone.tile_kinds).values == test::keepTiles(full, alone.tile_kinds).values);
+        CHECK(test::keepTiles(alone.pictures[kRight], alone.tile_kinds).values ==
+              test::keepTiles(full, alone.tile_kinds).values);
         CHECK(countOf(alone.result, "splats_visible_left") != countOf(alone.result, "splats_visible_right"));
         settings.per_eye = false;
         const AffiliatedFrame together = makeAffiliated(frame, eyes, settings);
-        CHECK(countOf(together.result, "splats_visible_left") >= countOf(alone.result, "splats_visible_left"));
+        CHECK(countOf(together.result, "splats_visible_left") >=
+              countOf(alone.result, "splats_visible_left"));
         CHECK(these(together.tile_kinds, together.pictures[kRight].values, together.pictures[kLeft].values) ==
               these(alone.tile_kinds, alone.pictures[kRight].values, alone.pictures[kLeft].values));
     }

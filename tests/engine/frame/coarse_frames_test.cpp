@@ -33,7 +33,9 @@ std::vector<double> tileErrors(const Image& a, const Image& b) {
     std::vector<double> errors(columns * tilesOf(a.size_px).y, 0.0);
     for (std::size_t i = 0; i < a.pixelCount(); ++i) {
         const std::size_t tile = i / a.size_px.x / 16 * columns + i % a.size_px.x / 16;
-        for (std::size_t c = 0; c < 3; ++c) { errors[tile] += std::pow(static_cast<double>(a.values[4 * i + c]) - b.values[4 * i + c], 2); }
+        for (std::size_t c = 0; c < 3; ++c) {
+            errors[tile] += std::pow(static_cast<double>(a.values[4 * i + c]) - b.values[4 * i + c], 2);
+        }
     }
     return errors;
 }
@@ -56,7 +58,8 @@ std::uint64_t differenceOf(std::uint64_t a, std::uint64_t b) { return std::max(a
 
 // Kinds of tiles and depths must match the twin's, too; `flips` is the number of tiles with a splat at a
 // threshold.
-void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::CoarsePicture& twin, std::ptrdiff_t flips) {
+void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::CoarsePicture& twin,
+                std::ptrdiff_t flips) {
     checkAgainstTwin(frame.readPicture(0), twin.picture, flips);
     const auto coarse = static_cast<std::uint64_t>(std::ranges::count(twin.coarse, 1)),
                tried = static_cast<std::uint64_t>(std::ranges::count(twin.tried, 1));
@@ -65,7 +68,10 @@ void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::
     const Image depth = frame.readDominantDepth();
     std::size_t off = 0;
     for (std::size_t i = 0; i < depth.values.size(); ++i) {
-        off += std::abs(static_cast<double>(depth.values[i]) - twin.picture.depth[i]) > 1e-3 * (1.0 + twin.picture.depth[i]) ? 1 : 0;
+        off += std::abs(static_cast<double>(depth.values[i]) - twin.picture.depth[i]) >
+                       1e-3 * (1.0 + twin.picture.depth[i])
+                   ? 1
+                   : 0;
     }
     CHECK(off <= depth.values.size() / 100);
 }
@@ -74,21 +80,24 @@ reference::CoarsePicture twinOf(const ViewedScene& view, const FrameSettings& se
     reference::Settings twin_settings;
     twin_settings.background = settings.background;
     const Gaze& gaze = settings.gazes[0].value();
-    return reference::renderCoarse(view.scene, view.eye, {gaze.direction, gaze.clear_rad}, twin_settings, settings.hidden_tiles[0]);
+    return reference::renderCoarse(view.scene, view.eye, {gaze.direction, gaze.clear_rad}, twin_settings,
+                                   settings.hidden_tiles[0]);
 }
 
 // A picture this small shows more than the eye resolves only far from the gaze.
 const Gaze kAside{{-3.0, 1.0, -2.0}, 0.0};
 
-TEST_CASE_FIXTURE(
-    Gpu, "a picture with coarse tiles is the twin's, of discs and of Gaussians, also in odd sizes and behind a lens that hides parts") {
-    for (const ViewedScene& view :
-         {viewRoom({381, 279}, 20000), test::viewGaussians({143, 97}, false), test::viewGaussians({96, 80}, true)}) {
+TEST_CASE_FIXTURE(Gpu,
+                  "a picture with coarse tiles is the twin's, of discs and of Gaussians, also in odd sizes "
+                  "and behind a lens that hides parts") {
+    for (const ViewedScene& view : {viewRoom({381, 279}, 20000), test::viewGaussians({143, 97}, false),
+                                    test::viewGaussians({96, 80}, true)}) {
         KeptFrame frame(context(), view.scene);
         for (const Tiles& hidden : {Tiles{}, someHidden(view.eye)}) {
             CAPTURE(view.name);
             CAPTURE(hidden.empty());
-            FrameSettings settings = settingsFor(view.scene.isGaussian3d() ? kAside : Gaze{{-0.5, 0.2, 1.0}, 0.15});
+            FrameSettings settings =
+                settingsFor(view.scene.isGaussian3d() ? kAside : Gaze{{-0.5, 0.2, 1.0}, 0.15});
             settings.hidden_tiles[0] = hidden;
             settings.background = glm::dvec3(0.1, 0.2, 0.3);
             const FrameResult result = frame.render({&view.eye, 1}, settings);
@@ -100,10 +109,12 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "however many threads blend a cell, and however many tiles there are, coarse tiles are the twin's") {
+TEST_CASE_FIXTURE(
+    Gpu, "however many threads blend a cell, and however many tiles there are, coarse tiles are the twin's") {
     std::uint64_t in_full = 0, coarse = 0;
     int run = 0;
-    for (const glm::uvec2& size_px : std::vector<glm::uvec2>{{15, 16}, {16, 16}, {17, 33}, {31, 32}, {33, 48}, {80, 16}, {176, 144}}) {
+    for (const glm::uvec2& size_px :
+         std::vector<glm::uvec2>{{15, 16}, {16, 16}, {17, 33}, {31, 32}, {33, 48}, {80, 16}, {176, 144}}) {
         const ViewedScene view = viewRoom(size_px, 20000);
         const FrameSettings settings = settingsFor(kAside);
         const auto twin = twinOf(view, settings);
@@ -123,7 +134,9 @@ TEST_CASE_FIXTURE(Gpu, "however many threads blend a cell, and however many tile
 }
 
 // In a frame from which others are made: words and tiles.
-TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it is expected to lack") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it is expected to lack") {
     const ViewedScene view = viewRoom({176, 144}, 20000);
     const std::array<Eye, 2> eyes{view.eye, view.eye};
     for (const bool halves : {false, true}) {
@@ -136,7 +149,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
         frame.render(eyes, settings);
         reference::Settings twin_settings;
         twin_settings.inverse_depth_moments = true;
-        const auto twin = reference::renderCoarse(view.scene, view.eye, {kAside.direction, kAside.clear_rad}, twin_settings);
+        const auto twin = reference::renderCoarse(view.scene, view.eye, {kAside.direction, kAside.clear_rad},
+                                                  twin_settings);
         const test::EyeOnDevice eye = test::readEye(*this, frame, 0, view.eye);
         std::size_t coarse = 0, off = 0, pixels = 0;
         for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
@@ -148,7 +162,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
             CHECK(tile.lost == doctest::Approx(std::sqrt(twin.losses[t] / (3.0 * 256.0))).epsilon(0.02));
         }
         for (std::size_t i = 0; i < eye.history.pixels.size(); ++i) {
-            const double alpha = twin.picture.rgba[i].a, inverse_depth = alpha > 0.0 ? twin.picture.inverse_depth[i] / alpha : 0.0;
+            const double alpha = twin.picture.rgba[i].a,
+                         inverse_depth = alpha > 0.0 ? twin.picture.inverse_depth[i] / alpha : 0.0;
             if (twin.coarse[test::tileOf(i, view.eye.size_px)] == 0) { continue; }
             ++pixels;
             const double made = eye.history.pixels[i] ? eye.history.pixels[i]->inverse_depth : 0.0;
@@ -172,7 +187,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to such tiles sees them in full") {
+                  "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to "
+                  "such tiles sees them in full") {
     // With a squared error of 0.3072.
     const reference::HistoryTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
     CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
@@ -197,7 +213,9 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(compare(other->readPicture(0), made).psnrDb() > 65.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the one in full, and what it sees of the rest is too little to be noticed") {
+TEST_CASE_FIXTURE(Gpu,
+                  "where an eye looks its picture is the one in full, and what it sees of the rest is too "
+                  "little to be noticed") {
     const ViewedScene view = viewRoom({512, 448}, 60000);
     KeptFrame frame(context(), view.scene);
     for (const Gaze& gaze : {Gaze{{0.4, 0.0, 1.0}, 0.0}, Gaze{{-0.7, 0.3, 1.0}, 0.1}}) {
@@ -219,13 +237,15 @@ TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the one in full, and w
         CHECK(100 * noticed <= coarse);
         CHECK(3 * coarse > of_beyond);
         CHECK(countOf(half, "tile_pairs") == countOf(full, "tile_pairs"));
-        CHECK(4 * countOf(half, "tile_pairs_in_full") + countOf(half, "tile_pairs_as_samples") < 4 * countOf(full, "tile_pairs"));
+        CHECK(4 * countOf(half, "tile_pairs_in_full") + countOf(half, "tile_pairs_as_samples") <
+              4 * countOf(full, "tile_pairs"));
         CHECK(countOf(half, "tiles_coarse") >= coarse);
         CHECK(countOf(half, "commands") == countOf(full, "commands"));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or of which nothing is known, sees all in full, byte for byte") {
+TEST_CASE_FIXTURE(
+    Gpu, "an eye that may look everywhere, or of which nothing is known, sees all in full, byte for byte") {
     const ViewedScene view = viewRoom({200, 160}, 20000);
     KeptFrame frame(context(), view.scene);
     const FrameSettings clear = settingsFor({{0.0, 0.0, 1.0}, 1.6});
@@ -250,7 +270,8 @@ TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or of which nothing is 
     CHECK(frame.readPicture(0).values == whole.values);
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists that are too short grow, and coarse tiles take a word a tile that other frames give back") {
+TEST_CASE_FIXTURE(
+    Gpu, "lists that are too short grow, and coarse tiles take a word a tile that other frames give back") {
     const ViewedScene view = viewRoom({240, 200}, 20000);
     const FrameSettings settings = settingsFor({{0.0, 0.0, 1.0}, 0.2});
     KeptFrame short_of(context(), view.scene, {.first_capacity = {256, 256}});

@@ -14,7 +14,8 @@ FrameSettings makeSettings(Mode mode, std::uint64_t mark = 0) {
 ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {96, 96}, 8000); }
 
 Eye turned(Eye eye, double radians) {
-    eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(radians, glm::dvec3(0, 1, 0));
+    eye.world_from_camera.orientation =
+        eye.world_from_camera.orientation * glm::angleAxis(radians, glm::dvec3(0, 1, 0));
     return eye;
 }
 // Looks at nothing.
@@ -47,7 +48,8 @@ FrameSettings blind() {
     return settings;
 }
 // Renders this many frames without waiting; returns the last report.
-FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const FrameSettings& settings, int frames) {
+FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const FrameSettings& settings,
+                    int frames) {
     FrameResult last{};
     for (int i = 0; i < frames; ++i) {
         if (auto result = frame.renderAhead(eyes, settings)) { last = std::move(*result); }
@@ -55,16 +57,19 @@ FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const Fr
     return last;
 }
 
-TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, to the byte, in every mode, also after another size") {
-    for (const Mode mode :
-         {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
+TEST_CASE_FIXTURE(Atelier,
+                  "a frame that is not waited for is the one that is, to the byte, in every mode, also after "
+                  "another size") {
+    for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted,
+                            Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
         KeptFrame ahead(context(), scene);
         const auto waited = StereoFrame::beside(ahead);
         FrameSettings settings = makeSettings(mode);
         settings.keep_history = hasHistory(mode);
         for (int step = 0; step < (settings.keep_history ? 12 : 4); ++step) {
-            const auto eyes = eyesAt(ofSize(view.eye, step / 4 == 1 ? glm::uvec2(64, 80) : glm::uvec2(96, 96)), step);
+            const auto eyes =
+                eyesAt(ofSize(view.eye, step / 4 == 1 ? glm::uvec2(64, 80) : glm::uvec2(96, 96)), step);
             ahead.renderAhead(eyes, settings);
             // `predicted` uses the frame before
             if (settings.keep_history || step >= 2) { waited->render(eyes, settings); }
@@ -73,12 +78,14 @@ TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, t
     }
 }
 
-TEST_CASE_FIXTURE(Atelier, "what a frame says of itself comes two frames later, the first and the last at once") {
+TEST_CASE_FIXTURE(Atelier,
+                  "what a frame says of itself comes two frames later, the first and the last at once") {
     KeptFrame frame(context(), scene);
     const auto waited = StereoFrame::beside(frame);
     std::vector<std::uint64_t> visible;
     for (int step = 0; step < 6; ++step) {
-        visible.push_back(countOf(waited->render(eyesAt(view.eye, step), makeSettings(Mode::kShared)), "splats_visible_left"));
+        visible.push_back(countOf(waited->render(eyesAt(view.eye, step), makeSettings(Mode::kShared)),
+                                  "splats_visible_left"));
     }
     std::vector<int> told;
     const auto take = [&](const std::optional<FrameResult>& result) {
@@ -86,7 +93,8 @@ TEST_CASE_FIXTURE(Atelier, "what a frame says of itself comes two frames later, 
         if (result) { CHECK(countOf(*result, "splats_visible_left") == visible[result->mark]); }
     };
     for (int step = 0; step < 6; ++step) {
-        take(frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared, static_cast<std::uint64_t>(step))));
+        take(frame.renderAhead(eyesAt(view.eye, step),
+                               makeSettings(Mode::kShared, static_cast<std::uint64_t>(step))));
     }
     take(frame.finish());
     // The first frame is waited for, since nothing is known about its lists.
@@ -94,7 +102,8 @@ TEST_CASE_FIXTURE(Atelier, "what a frame says of itself comes two frames later, 
     CHECK_FALSE(frame.finish().has_value());
 }
 
-TEST_CASE_FIXTURE(Atelier, "lists have room ahead of what eyes need, so that a view that moves is not cut short") {
+TEST_CASE_FIXTURE(Atelier,
+                  "lists have room ahead of what eyes need, so that a view that moves is not cut short") {
     KeptFrame frame(context(), scene, kNoRoom);
     for (int step = 0; step < 20; ++step) {
         const auto result = frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared));
@@ -103,7 +112,9 @@ TEST_CASE_FIXTURE(Atelier, "lists have room ahead of what eyes need, so that a v
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
-TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has, and so however many of them are sorted in the picture") {
+TEST_CASE_FIXTURE(Atelier,
+                  "lists have room ahead however many pairs a pixel has, and so however many of them are "
+                  "sorted in the picture") {
     StereoFrame counting(context(), scene);
     const auto pairsOf = [&](const std::array<Eye, 2>& eyes) {
         const FrameResult result = counting.render(eyes, seeing());
@@ -133,7 +144,9 @@ TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has
     CHECK(tried > 15);
 }
 
-TEST_CASE_FIXTURE(Atelier, "walking is no jump, whatever the near plane and the scene's size; a wearer's step and snap turn are") {
+TEST_CASE_FIXTURE(
+    Atelier,
+    "walking is no jump, whatever the near plane and the scene's size; a wearer's step and snap turn are") {
     // Whether a frame is waited for, in which case it reports at once.
     const auto waits = [&](double units_per_metre, double metres, double degrees) {
         KeptFrame frame(context(), scene);
@@ -156,8 +169,11 @@ TEST_CASE_FIXTURE(Atelier, "walking is no jump, whatever the near plane and the 
     }
 }
 
-TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again once at most unseen, whatever lists have no room") {
-    for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
+TEST_CASE_FIXTURE(
+    Atelier,
+    "after a jump a frame is waited for, and done again once at most unseen, whatever lists have no room") {
+    for (const Mode mode :
+         {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(nameOf(mode));
         KeptFrame frame(context(), scene, kNoRoom);
         const auto waited = StereoFrame::beside(frame);
@@ -182,8 +198,10 @@ TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again o
 }
 
 TEST_CASE_FIXTURE(Atelier,
-                  "where a jump may be seen, no frame after it is waited for: it is whole if lists have room, and else one soon is") {
-    const auto there = eyesAt(view.eye, 0), before = eyesAt(turned(view.eye, 0.5), 0), nowhere = eyesAt(awayFrom(view.eye), 0);
+                  "where a jump may be seen, no frame after it is waited for: it is whole if lists have "
+                  "room, and else one soon is") {
+    const auto there = eyesAt(view.eye, 0), before = eyesAt(turned(view.eye, 0.5), 0),
+               nowhere = eyesAt(awayFrom(view.eye), 0);
     for (const Mode mode : {Mode::kShared, Mode::kTemporal}) {
         for (const bool has_room : {true, false}) {
             CAPTURE(nameOf(mode));
@@ -225,7 +243,9 @@ TEST_CASE_FIXTURE(Atelier, "kernels that were made before change nothing in a pi
     }
 }
 
-TEST_CASE_FIXTURE(Atelier, "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
+TEST_CASE_FIXTURE(
+    Atelier,
+    "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
     const auto eyes = eyesAt(view.eye, 0);
     // Or nothing moves but a wall of splats that comes through the near plane.
     for (const bool jumps : {true, false}) {
@@ -250,7 +270,8 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     roomy.render(eyes, seeing());
     const std::uint64_t most = context().memoryUse().current_bytes - before;
 
-    const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = (least + most) / 2});
+    const Context tight(
+        {.device = {}, .validation = test::kValidation, .memory_limit_bytes = (least + most) / 2});
     const GpuScene held(tight, view.scene);
     StereoFrame frame(tight, held, kNoRoom);
     goAhead(frame, eyes, blind(), 3);
@@ -274,7 +295,9 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     CHECK(tight.validationMessages().empty());
 }
 
-TEST_CASE_FIXTURE(Atelier, "pictures that the device has no memory for are refused before a frame is begun, and smaller ones go on") {
+TEST_CASE_FIXTURE(Atelier,
+                  "pictures that the device has no memory for are refused before a frame is begun, and "
+                  "smaller ones go on") {
     const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = 64u << 20});
     const GpuScene held(tight, view.scene);
     StereoFrame frame(tight, held);
@@ -304,7 +327,9 @@ TEST_CASE_FIXTURE(Atelier, "other sizes, modes and hidden tiles wait for the fra
     std::uint64_t mark = 0;
     for (int round = 0; round < 2; ++round) {
         for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kPaper}) {
-            for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(view.eye, step), makeSettings(mode, ++mark)); }
+            for (int step = 0; step < 3; ++step) {
+                frame.renderAhead(eyesAt(view.eye, step), makeSettings(mode, ++mark));
+            }
             FrameSettings masked = makeSettings(mode, ++mark);
             masked.hidden_tiles = {hidden, hidden};
             CHECK(frame.renderAhead(eyesAt(view.eye, 3), masked)->mark == mark);
@@ -314,7 +339,9 @@ TEST_CASE_FIXTURE(Atelier, "other sizes, modes and hidden tiles wait for the fra
     CHECK_FALSE(frame.finish().has_value());
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its own scene, and the other one can go or go on") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "a frame that goes on with another's kernels draws its own scene, and the other one can go or go on") {
     const ViewedScene view = viewAtelier(), other_view = test::viewBuiltin("builtin:fence", {96, 96});
     const GpuScene scene(context(), view.scene), other_scene(context(), other_view.scene);
     const auto pictureOf = [](StereoFrame& frame, const Eye& eye) {
@@ -325,9 +352,12 @@ TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its ow
         KeptFrame alone(context(), of);
         return pictureOf(alone, eye);
     };
-    const auto expected = pictureAlone(scene, view.eye), other_expected = pictureAlone(other_scene, other_view.eye);
+    const auto expected = pictureAlone(scene, view.eye),
+               other_expected = pictureAlone(other_scene, other_view.eye);
     auto before = std::make_unique<StereoFrame>(context(), other_scene);
-    for (int step = 0; step < 2; ++step) { before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted)); }
+    for (int step = 0; step < 2; ++step) {
+        before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted));
+    }
     KeptFrame frame(context(), scene);
     frame.takeKernels(*before);  // while frames are in flight
     CHECK(pictureOf(frame, view.eye) == expected);

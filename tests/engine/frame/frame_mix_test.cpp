@@ -19,7 +19,9 @@ public:
     double between(double low, double high) { return low + (high - low) * share(); }
     bool falls(double odds) { return share() < odds; }
     std::size_t below(std::size_t count) { return random_() % count; }
-    glm::dvec3 vector(double reach) { return {between(-reach, reach), between(-reach, reach), between(-reach, reach)}; }
+    glm::dvec3 vector(double reach) {
+        return {between(-reach, reach), between(-reach, reach), between(-reach, reach)};
+    }
 
 private:
     std::mt19937 random_;
@@ -40,7 +42,8 @@ public:
         const double reach = dice_.falls(0.2) ? dice_.between(0.02, 0.4) : 0.004;  // now and then a jump
         middle_.world_from_camera.position += dice_.vector(reach);
         middle_.world_from_camera.orientation =
-            glm::normalize(middle_.world_from_camera.orientation * glm::angleAxis(0.005, glm::normalize(dice_.vector(1) + 1e-3)));
+            glm::normalize(middle_.world_from_camera.orientation *
+                           glm::angleAxis(0.005, glm::normalize(dice_.vector(1) + 1e-3)));
     }
 
     [[nodiscard]] std::vector<Eye> eyes() const {
@@ -50,7 +53,8 @@ public:
             eyes[e].size_px = sizes_[reprojects(settings_.mode) || !settings_.keep_history ? 0 : e];
             eyes[e].intrinsics = intrinsicsFromAngles(angles_[e], eyes[e].size_px);
             eyes[e].world_from_camera.orientation =
-                eyes[e].world_from_camera.orientation * glm::angleAxis(e == 0 ? -cant_ : cant_, glm::dvec3(0, 1, 0));
+                eyes[e].world_from_camera.orientation *
+                glm::angleAxis(e == 0 ? -cant_ : cant_, glm::dvec3(0, 1, 0));
         }
         return eyes;
     }
@@ -59,7 +63,8 @@ public:
         FrameSettings settings = settings_;
         // Moments are for files: pictures that are only shown have no kernel for them, and neither have
         // histories.
-        settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_history && hasHistory(settings.mode));
+        settings.keep_moments = settings.keep_moments && !settings.half_floats &&
+                                !(settings.keep_history && hasHistory(settings.mode));
         const std::vector<Eye> all = eyes();
         for (std::size_t e = 0; e < all.size() && hides_; ++e) {
             const glm::uvec2 tiles = (all[e].size_px + 15u) / 16u;
@@ -98,13 +103,18 @@ private:
             for (auto& gaze : s.gazes) {
                 gaze.reset();
                 if (both || dice_.falls(0.3)) {
-                    gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1}, dice_.between(0.05, 0.4)};
+                    gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1},
+                                dice_.between(0.05, 0.4)};
                 }
             }
         });
         when([&] { s.stereo.budget = dice_.falls(0.2) ? 1.0 : dice_.between(0.1, 0.5); });
         when([&] { s.stereo.forward = dice_.falls(0.3); });
-        when([&] { s.stereo.depth_choice = dice_.falls(0.7) ? gpu::kDepthInverse : dice_.falls(0.5) ? gpu::kDepthMean : gpu::kDepthSum; });
+        when([&] {
+            s.stereo.depth_choice = dice_.falls(0.7)   ? gpu::kDepthInverse
+                                    : dice_.falls(0.5) ? gpu::kDepthMean
+                                                       : gpu::kDepthSum;
+        });
         when([&] { s.stereo.tight_edges = dice_.falls(0.5); });
         when([&] { s.stereo.center_rois = dice_.falls(0.3); });
         when([&] { s.stereo.move_cost = dice_.falls(0.5) ? 0 : 32; });
@@ -115,7 +125,8 @@ private:
         constexpr std::array<glm::uvec2, 4> kSizes{{{96, 80}, {131, 77}, {64, 112}, {160, 144}}};
         for (std::size_t e = 0; e < 2; ++e) {
             sizes_[e] = e == 1 && dice_.falls(0.7) ? sizes_[0] : kSizes[dice_.below(kSizes.size())];
-            angles_[e] = {-dice_.between(0.4, 0.8), dice_.between(0.4, 0.8), dice_.between(0.4, 0.8), -dice_.between(0.4, 0.8)};
+            angles_[e] = {-dice_.between(0.4, 0.8), dice_.between(0.4, 0.8), dice_.between(0.4, 0.8),
+                          -dice_.between(0.4, 0.8)};
         }
         if (dice_.falls(0.5)) { angles_[1] = angles_[0]; }
         cant_ = dice_.falls(0.5) ? 0.0 : dice_.between(0.0, 0.15);
@@ -132,14 +143,19 @@ private:
 };
 
 // Whether all that it learns from earlier frames is whether moving pays.
-bool standsAlone(const FrameSettings& settings) { return !hasHistory(settings.mode) || !settings.keep_history; }
+bool standsAlone(const FrameSettings& settings) {
+    return !hasHistory(settings.mode) || !settings.keep_history;
+}
 
 // By frames that know of none before them.
-std::vector<Image> picturesAlone(StereoFrame& other, const std::vector<Eye>& eyes, const FrameSettings& settings) {
+std::vector<Image> picturesAlone(StereoFrame& other, const std::vector<Eye>& eyes,
+                                 const FrameSettings& settings) {
     const auto frame = StereoFrame::beside(other);
     frame->render(eyes, settings);
     std::vector<Image> pictures;
-    for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame->readPicture(static_cast<int>(e))); }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        pictures.push_back(frame->readPicture(static_cast<int>(e)));
+    }
     return pictures;
 }
 
@@ -161,18 +177,21 @@ TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
             full.mode = eyes.size() == 1 ? Mode::kMono : Mode::kTwoPass;
             full.half_periphery = false;
             const std::vector<Image> in_full = picturesAlone(mixed, eyes, full);
-            const std::vector<Image> alone = standsAlone(settings) ? picturesAlone(mixed, eyes, settings) : in_full;
+            const std::vector<Image> alone =
+                standsAlone(settings) ? picturesAlone(mixed, eyes, settings) : in_full;
             for (std::size_t e = 0; e < eyes.size(); ++e) {
                 CAPTURE(e);
                 const Image picture = mixed.readPicture(static_cast<int>(e));
                 REQUIRE(picture.size_px == eyes[e].size_px);
                 // `predicted` renders in full where moving did not pay last time.
-                const bool same = picture.values == alone[e].values ||
-                                  (choiceOf(settings.mode) == TileChoice::kPredicted && picture.values == in_full[e].values);
+                const bool same =
+                    picture.values == alone[e].values || (choiceOf(settings.mode) == TileChoice::kPredicted &&
+                                                          picture.values == in_full[e].values);
                 if (standsAlone(settings)) {
                     CHECK(same);
                 } else if (!same) {
-                    CHECK(std::ranges::all_of(picture.values, [](float value) { return std::isfinite(value); }));
+                    CHECK(std::ranges::all_of(picture.values,
+                                              [](float value) { return std::isfinite(value); }));
                     CHECK(compare(in_full[e], picture).psnrDb() > kLeastDb);
                 }
             }

@@ -14,7 +14,8 @@ namespace binosplat::test {
 class KeptKernels {
 public:
     KeptKernels(const Context& context, StereoFrame& frame, const FrameOptions& options = {})
-        : frame_(frame), pool_(&context == &Gpu::shared() && options.threads_per_cell == 0 ? &pool() : nullptr) {
+        : frame_(frame),
+          pool_(&context == &Gpu::shared() && options.threads_per_cell == 0 ? &pool() : nullptr) {
         if (pool_ != nullptr) { frame_.takeKernels(pool_->frame); }
     }
     KeptKernels(const KeptKernels&) = delete;
@@ -61,10 +62,14 @@ inline std::uint64_t countOf(const FrameResult& result, const char* name) {
     return counters.empty() ? 0 : counters.at(name);
 }
 
-inline std::array<Image, 2> picturesOf(StereoFrame& frame) { return {frame.readPicture(kLeft), frame.readPicture(kRight)}; }
+inline std::array<Image, 2> picturesOf(StereoFrame& frame) {
+    return {frame.readPicture(kLeft), frame.readPicture(kRight)};
+}
 
 using PairOfValues = std::array<std::vector<float>, 2>;
-inline PairOfValues shownBy(StereoFrame& frame) { return {frame.readPicture(kLeft).values, frame.readPicture(kRight).values}; }
+inline PairOfValues shownBy(StereoFrame& frame) {
+    return {frame.readPicture(kLeft).values, frame.readPicture(kRight).values};
+}
 
 // The lower value of the two eyes.
 inline double psnrDb(const std::array<Image, 2>& a, const std::array<Image, 2>& b) {
@@ -75,8 +80,8 @@ struct MonoFrame {
     FrameResult result;
     Image picture, depth, moments;
 };
-inline MonoFrame renderMono(const Context& context, const Scene& scene, const Eye& eye, const FrameSettings& settings,
-                            const FrameOptions& options = {}) {
+inline MonoFrame renderMono(const Context& context, const Scene& scene, const Eye& eye,
+                            const FrameSettings& settings, const FrameOptions& options = {}) {
     KeptFrame frame(context, scene, options);
     FrameResult result = frame.render({&eye, 1}, settings);
     return {std::move(result), frame.readPicture(0), frame.readDominantDepth(),
@@ -87,8 +92,8 @@ struct PairOfPictures {
     FrameResult result;
     std::array<Image, 2> pictures;
 };
-inline PairOfPictures renderPair(const Context& context, const Scene& scene, const std::array<Eye, 2>& eyes, const FrameSettings& settings,
-                                 const FrameOptions& options = {}) {
+inline PairOfPictures renderPair(const Context& context, const Scene& scene, const std::array<Eye, 2>& eyes,
+                                 const FrameSettings& settings, const FrameOptions& options = {}) {
     KeptFrame frame(context, scene, options);
     FrameResult result = frame.render(eyes, settings);
     return {std::move(result), picturesOf(frame)};

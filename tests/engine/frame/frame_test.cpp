@@ -45,11 +45,13 @@ struct Threshold {
 };
 
 // The threshold to which pixel `i` of the twin comes closest.
-Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const reference::Settings& settings, std::size_t i) {
+Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const reference::Settings& settings,
+                           std::size_t i) {
     const glm::uvec2 pixel(i % eye.size_px.x, i / eye.size_px.x);
     const glm::dvec2 pixel_px = glm::dvec2(pixel) + 0.5;
     const std::uint32_t columns = (eye.size_px.x + gpu::kTileSize - 1) / gpu::kTileSize;
-    const reference::TileRange range = twin.ranges[std::size_t{pixel.y / gpu::kTileSize} * columns + pixel.x / gpu::kTileSize];
+    const reference::TileRange range =
+        twin.ranges[std::size_t{pixel.y / gpu::kTileSize} * columns + pixel.x / gpu::kTileSize];
     Threshold nearest;
     double transmittance = 1.0, depth_before = 0.0;
     for (std::uint32_t at = range.begin; at < range.end; ++at) {
@@ -62,7 +64,9 @@ Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const r
         if (!reference::meet(plane, pixel_px, hit)) { continue; }
         if (reference::meet(disc, pixel_px, hit_disc)) {
             nearest.meet("near", hit_disc.depth / settings.near - 1.0);
-            if (reference::meet(low_pass, pixel_px, hit_low_pass)) { nearest.meet("low-pass", hit_low_pass.rho / hit_disc.rho - 1.0); }
+            if (reference::meet(low_pass, pixel_px, hit_low_pass)) {
+                nearest.meet("low-pass", hit_low_pass.rho / hit_disc.rho - 1.0);
+            }
         }
         const double alpha = std::min(0.99, splat.opacity * std::exp(-0.5 * hit.rho));
         nearest.meet("alpha", alpha * 255.0 - 1.0);
@@ -83,8 +87,8 @@ struct DepthErrors {
     std::uint64_t opaque = 0, off = 0;
     double greatest = 0.0, farthest_from_threshold = 0.0;
 };
-DepthErrors compareDepths(const Image& image, const reference::Picture& truth, const test::TwinStages& twin, const Eye& eye,
-                          const reference::Settings& settings) {
+DepthErrors compareDepths(const Image& image, const reference::Picture& truth, const test::TwinStages& twin,
+                          const Eye& eye, const reference::Settings& settings) {
     DepthErrors errors;
     for (std::size_t i = 0; i < truth.depth.size(); ++i) {
         if (truth.rgba[i].a <= 0.5) { continue; }
@@ -93,7 +97,8 @@ DepthErrors compareDepths(const Image& image, const reference::Picture& truth, c
         errors.greatest = std::max(errors.greatest, std::isnan(difference) ? HUGE_VAL : difference);
         if (difference <= 1e-3 * truth.depth[i]) { continue; }
         ++errors.off;
-        errors.farthest_from_threshold = std::max(errors.farthest_from_threshold, nearestThreshold(twin, eye, settings, i).distance);
+        errors.farthest_from_threshold =
+            std::max(errors.farthest_from_threshold, nearestThreshold(twin, eye, settings, i).distance);
     }
     return errors;
 }
@@ -111,12 +116,14 @@ double farthestDepth(const ViewedScene& view) {
 // the twin lies within 1e-5 of a threshold, which holds for all but 1e-4 of the pixels. Measured: 1 of the
 // atelier's 589,824 pixels is off, and none of the others'; with Mesa 25 also 11 of 133,045, where two of
 // playbot's 3D Gaussians change places. Returns the picture.
-Image checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db, double most_off = 1e-5) {
+Image checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db,
+                       double most_off = 1e-5) {
     CAPTURE(view.name);
     const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
     const reference::Settings twin_settings = twinSettings(settings);
     const test::TwinStages stages(view, twin_settings);
-    const reference::Picture twin = reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, view.eye, twin_settings);
+    const reference::Picture twin =
+        reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, view.eye, twin_settings);
     const Difference difference = compare(frame.picture, test::toImage(twin), 4);
     const DepthErrors depth = compareDepths(frame.depth, twin, stages, view.eye, twin_settings);
     CHECK(difference.not_finite == 0);
@@ -147,13 +154,17 @@ TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them" * tes
         {"statues/angel_2dgs_sh0.ply", {{0.0, -2.0, -5.0}, {0.0, -2.0, 0.0}, {0.0, -1.0, 0.0}, 60.0}, 96.0},
     };
     for (const auto& [file, view, least_db] : cases) {
-        checkAgainstTwin(*this, {file, loadScene((*data / file).string()), test::eyeOf(view, {384, 384})}, makeSettings(), least_db);
+        checkAgainstTwin(*this, {file, loadScene((*data / file).string()), test::eyeOf(view, {384, 384})},
+                         makeSettings(), least_db);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "the atelier and clouds of discs and of 3D Gaussians, dimmed or not, are rendered as the twin renders them") {
+TEST_CASE_FIXTURE(Gpu,
+                  "the atelier and clouds of discs and of 3D Gaussians, dimmed or not, are rendered as the "
+                  "twin renders them") {
     const glm::dvec3 background(0.1, 0.2, 0.3);
-    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {256, 256}, 20000), makeSettings(background), 80.0);
+    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {256, 256}, 20000), makeSettings(background),
+                     80.0);
     checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings(), 80.0);  // measured: 84.0
     for (const bool antialiased : {false, true}) {
         // measured: 81.7
@@ -161,12 +172,15 @@ TEST_CASE_FIXTURE(Gpu, "the atelier and clouds of discs and of 3D Gaussians, dim
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "the atelier of many splats is rendered as the twin renders it, in large" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu, "the atelier of many splats is rendered as the twin renders it, in large" *
+                           test::nightly()) {
     // Measured: 86.5.
-    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}), 80.0);
+    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000),
+                     makeSettings({0.1, 0.2, 0.3}), 80.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of the background, and then encoded") {
+TEST_CASE_FIXTURE(
+    Gpu, "colours of light are blended as light, over the light of the background, and then encoded") {
     ViewedScene view = test::viewGaussians({320, 240}, false);
     const glm::dvec3 background(0.1, 0.4, 0.8);
     reference::Picture blended = renderTwin(view, makeSettings(lightOf(background)));
@@ -185,7 +199,8 @@ TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of
     nothing.is_linear = true;
     const Image bare = renderMono(context(), nothing, view.eye, settings).picture;
     for (int channel = 0; channel < 3; ++channel) {
-        CHECK(bare.values[static_cast<std::size_t>(channel)] == doctest::Approx(background[channel]).epsilon(1e-5));
+        CHECK(bare.values[static_cast<std::size_t>(channel)] ==
+              doctest::Approx(background[channel]).epsilon(1e-5));
     }
     const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.02);
     FrameSettings stereo = settings;
@@ -193,12 +208,14 @@ TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of
     const Image full = test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight];
     for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
         stereo.mode = mode;
-        const double db = compare(test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight], full, 3).psnrDb();
+        const double db =
+            compare(test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight], full, 3).psnrDb();
         CHECK(db > (mode == Mode::kShared ? 80.0 : 25.0));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "colours above 1 are blended as they are, light or not: whoever shows them clamps them") {
+TEST_CASE_FIXTURE(Gpu,
+                  "colours above 1 are blended as they are, light or not: whoever shows them clamps them") {
     ViewedScene view = test::viewGaussians({64, 48}, false);
     const std::size_t stride = 3 * static_cast<std::size_t>(shCoefficientCount(view.scene.sh_degree));
     for (std::size_t i = 0; i < view.scene.size(); ++i) { view.scene.sh[i * stride] += 8.0f; }
@@ -210,24 +227,28 @@ TEST_CASE_FIXTURE(Gpu, "colours above 1 are blended as they are, light or not: w
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a flat 3D Gaussian that faces the eye is its disc with the low-pass's variance added") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a flat 3D Gaussian that faces the eye is its disc with the low-pass's variance added") {
     const glm::uvec2 size_px(160, 120);
     const Eye eye = test::makeEye(size_px);
     std::vector<test::Splat> narrow, wide;
     for (int i = 0; i < 60; ++i) {
         test::Splat splat;
         const float depth = 1.0f + 0.05f * static_cast<float>(i);
-        splat.position = {0.6f * std::sin(2.1f * static_cast<float>(i)) * depth, 0.45f * std::cos(1.3f * static_cast<float>(i)) * depth,
-                          depth};
+        splat.position = {0.6f * std::sin(2.1f * static_cast<float>(i)) * depth,
+                          0.45f * std::cos(1.3f * static_cast<float>(i)) * depth, depth};
         splat.rotation = glm::angleAxis(0.4f * static_cast<float>(i), glm::vec3(0, 0, 1));
         splat.scale = glm::vec2(0.012f + 0.001f * static_cast<float>(i % 7), 0.05f) * depth;
-        splat.colour = {0.5f + 0.4f * std::sin(static_cast<float>(i)), 0.3f, 0.9f - 0.01f * static_cast<float>(i)};
+        splat.colour = {0.5f + 0.4f * std::sin(static_cast<float>(i)), 0.3f,
+                        0.9f - 0.01f * static_cast<float>(i)};
         narrow.push_back(splat);
         const glm::vec2 sigma_px = 100.0f / depth * splat.scale;
         splat.scale = glm::sqrt(sigma_px * sigma_px + gpu::kScreenVariance) * depth / 100.0f;
         wide.push_back(splat);
     }
-    const auto pictureOf = [&](const Scene& scene) { return renderMono(context(), scene, eye, makeSettings({0.2, 0.4, 0.6})).picture; };
+    const auto pictureOf = [&](const Scene& scene) {
+        return renderMono(context(), scene, eye, makeSettings({0.2, 0.4, 0.6})).picture;
+    };
     Scene flat = test::makeScene(narrow);
     flat.thicknesses.assign(flat.size(), 1e-6f);
     const Image picture = pictureOf(flat);
@@ -236,19 +257,22 @@ TEST_CASE_FIXTURE(Gpu, "a flat 3D Gaussian that faces the eye is its disc with t
 }
 
 #ifdef BINOSPLAT_SOG  // which reads SOG
-TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as twin and another renderer render it, dimmed or not" *
-                           test::needsSharedData()) {
+TEST_CASE_FIXTURE(
+    Gpu, "a real scene of 3D Gaussians is rendered as twin and another renderer render it, dimmed or not" *
+             test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     Scene scene = loadScene((*data / "playbot/playbot_lod3_sog").string());
     REQUIRE(scene.isGaussian3d());
     // Measured: 91.1, 90.6 and 91.9 dB.
-    for (const auto& [theirs, view, most_off] : {std::tuple(std::string("playbot_lod3_3dgs.pfm"), kWhole, 1e-5),
-                                                 std::tuple(std::string("playbot_lod3_3dgs_near.pfm"), kNear, 1e-4),
-                                                 std::tuple(std::string("playbot_lod3_3dgs_antialiased.pfm"), kWhole, 1e-5)}) {
+    for (const auto& [theirs, view, most_off] :
+         {std::tuple(std::string("playbot_lod3_3dgs.pfm"), kWhole, 1e-5),
+          std::tuple(std::string("playbot_lod3_3dgs_near.pfm"), kNear, 1e-4),
+          std::tuple(std::string("playbot_lod3_3dgs_antialiased.pfm"), kWhole, 1e-5)}) {
         CAPTURE(theirs);
         scene.antialiased = theirs.ends_with("_antialiased.pfm");
-        const Image picture = checkAgainstTwin(*this, {theirs, scene, test::eyeOf(view, {400, 400})}, makeSettings(), 86.0, most_off);
+        const Image picture = checkAgainstTwin(*this, {theirs, scene, test::eyeOf(view, {400, 400})},
+                                               makeSettings(), 86.0, most_off);
         CHECK(compare(picture, readPicture(*data / "reference" / theirs), 3).psnrDb() > 60.0);
     }
 }
@@ -259,8 +283,9 @@ TEST_CASE_FIXTURE(Gpu, "moments of inverse depth are the twin's, on a background
     const FrameSettings settings = makeSettings({1.0, 0.5, 0.25}, true);
     checkAgainstTwin(*this, view, settings, 83.0);  // measured: 87.0
     const reference::Picture twin = renderTwin(view, settings);
-    const Difference difference = compare(renderMono(context(), view.scene, view.eye, settings).moments,
-                                          test::toImage(twin.size_px, twin.inverse_depth, twin.inverse_depth_squared), 2);
+    const Difference difference =
+        compare(renderMono(context(), view.scene, view.eye, settings).moments,
+                test::toImage(twin.size_px, twin.inverse_depth, twin.inverse_depth_squared), 2);
     CHECK(difference.not_finite == 0);
     CHECK(difference.psnrDb() >= 80.0);
 }
@@ -280,11 +305,14 @@ TEST_CASE_FIXTURE(Gpu, "one splat is the Gaussian that its parameters say, at ev
         if (alpha < 1.0 / 255.0) { alpha = 0.0; }
         const float* rgba = &frame.picture.values[static_cast<std::size_t>(4 * i)];
         for (int channel = 0; channel < 3; ++channel) {
-            worst_colour = std::max(
-                worst_colour, std::abs(static_cast<double>(rgba[channel]) - alpha * colour[channel] - (1.0 - alpha) * background[channel]));
+            worst_colour =
+                std::max(worst_colour, std::abs(static_cast<double>(rgba[channel]) - alpha * colour[channel] -
+                                                (1.0 - alpha) * background[channel]));
         }
         worst_colour = std::max(worst_colour, std::abs(static_cast<double>(rgba[3]) - alpha));
-        worst_depth = std::max(worst_depth, std::abs(static_cast<double>(frame.depth.values[static_cast<std::size_t>(i)]) - 2.0 * alpha));
+        worst_depth = std::max(
+            worst_depth,
+            std::abs(static_cast<double>(frame.depth.values[static_cast<std::size_t>(i)]) - 2.0 * alpha));
     }
     CHECK(worst_colour <= 3e-4);  // colours are half floats
     CHECK(worst_depth <= 5e-6);
@@ -294,8 +322,10 @@ TEST_CASE_FIXTURE(Gpu, "two layers blend front to back, in colour, depth and its
     // Opacities of 0.5 at z = 2 and 0.9 at z = 4, with the same u and v at every pixel.
     const ViewedScene view = test::viewBuiltin("builtin:two-layers", {255, 255});
     const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(glm::dvec3(0.0), true));
-    for (const glm::ivec2 d : {glm::ivec2(0, 0), glm::ivec2(20, 0), glm::ivec2(-30, 41), glm::ivec2(7, -60)}) {
-        const double f = view.eye.intrinsics.fx, rho = glm::dot(glm::dvec2(d), glm::dvec2(d)) * 16.0 / (f * f);
+    for (const glm::ivec2 d :
+         {glm::ivec2(0, 0), glm::ivec2(20, 0), glm::ivec2(-30, 41), glm::ivec2(7, -60)}) {
+        const double f = view.eye.intrinsics.fx,
+                     rho = glm::dot(glm::dvec2(d), glm::dvec2(d)) * 16.0 / (f * f);
         const double near = 0.5 * std::exp(-0.5 * rho), far = (1.0 - near) * 0.9 * std::exp(-0.5 * rho);
         const auto pixel = static_cast<std::size_t>((127 + d.y) * 255 + 127 + d.x);
         const glm::dvec3 colour = near * glm::dvec3(0.8) + far * glm::dvec3(0.1, 0.2, 0.6);
@@ -303,9 +333,12 @@ TEST_CASE_FIXTURE(Gpu, "two layers blend front to back, in colour, depth and its
             CHECK(static_cast<double>(frame.picture.values[4 * pixel + channel]) ==
                   doctest::Approx(colour[static_cast<int>(channel)]).epsilon(5e-4));
         }
-        CHECK(static_cast<double>(frame.depth.values[pixel]) == doctest::Approx(2.0 * near + 4.0 * far).epsilon(5e-5));
-        CHECK(static_cast<double>(frame.moments.values[2 * pixel]) == doctest::Approx(near / 2.0 + far / 4.0).epsilon(5e-5));
-        CHECK(static_cast<double>(frame.moments.values[2 * pixel + 1]) == doctest::Approx(near / 4.0 + far / 16.0).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.depth.values[pixel]) ==
+              doctest::Approx(2.0 * near + 4.0 * far).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.moments.values[2 * pixel]) ==
+              doctest::Approx(near / 2.0 + far / 4.0).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.moments.values[2 * pixel + 1]) ==
+              doctest::Approx(near / 4.0 + far / 16.0).epsilon(5e-5));
     }
 }
 
@@ -319,8 +352,10 @@ TEST_CASE_FIXTURE(Gpu, "D/A is the depth of a plane that all splats lie in, slan
     for (std::size_t i = 0; i < frame.depth.values.size(); ++i) {
         const double alpha = static_cast<double>(frame.picture.values[4 * i + 3]);
         if (alpha < 0.5) { continue; }
-        const double x = (static_cast<double>(i % 256) + 0.5 - view.eye.intrinsics.cx) / view.eye.intrinsics.fx;
-        worst = std::max(worst, std::abs(static_cast<double>(frame.depth.values[i]) / alpha * (1.0 - x) / 4.0 - 1.0));
+        const double x =
+            (static_cast<double>(i % 256) + 0.5 - view.eye.intrinsics.cx) / view.eye.intrinsics.fx;
+        worst = std::max(
+            worst, std::abs(static_cast<double>(frame.depth.values[i]) / alpha * (1.0 - x) / 4.0 - 1.0));
         ++opaque;
     }
     CHECK(opaque > 20000);
@@ -328,14 +363,15 @@ TEST_CASE_FIXTURE(Gpu, "D/A is the depth of a plane that all splats lie in, slan
 }
 
 TEST_CASE_FIXTURE(Gpu, "walls stand at their depths behind bars and edges") {
-    for (const auto& [name, place] :
-         {std::pair("builtin:fence", std::pair(0.1, 3.0)), std::pair("builtin:step-edge", std::pair(0.4, 4.0))}) {
+    for (const auto& [name, place] : {std::pair("builtin:fence", std::pair(0.1, 3.0)),
+                                      std::pair("builtin:step-edge", std::pair(0.4, 4.0))}) {
         CAPTURE(name);
         const ViewedScene view = test::viewBuiltin(name, {256, 256});
         const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
         // A column between two bars, and one to the right of the edge, by x on the plane z = 1, and the wall
         // that it meets.
-        const auto column = static_cast<std::size_t>(view.eye.intrinsics.cx + view.eye.intrinsics.fx * place.first);
+        const auto column =
+            static_cast<std::size_t>(view.eye.intrinsics.cx + view.eye.intrinsics.fx * place.first);
         for (std::size_t row = 32; row < 224; ++row) {
             const std::size_t pixel = row * 256 + column;
             CHECK(static_cast<double>(frame.depth.values[pixel] / frame.picture.values[4 * pixel + 3]) ==

@@ -15,16 +15,21 @@ constexpr double kLeastDb = 50.0;  // 8 bits alone leave 59
 // For a walk: a tile whose price differs slightly in float32 is rendered a frame earlier or later.
 constexpr double kLeastWalkDb = 45.0;
 
-std::filesystem::path stemOf(const std::string& name) { return std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "tests/golden" / name; }
+std::filesystem::path stemOf(const std::string& name) {
+    return std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "tests/golden" / name;
+}
 
 // The file; with BINOSPLAT_WRITE_GOLDENS=1 it is written first.
 Image readGolden(const std::string& name, const Image& made) {
     const char* write = std::getenv("BINOSPLAT_WRITE_GOLDENS");
-    if (write != nullptr && std::string(write) == "1") { writePicture(stemOf(name), PictureKind::kDisplay, made); }
+    if (write != nullptr && std::string(write) == "1") {
+        writePicture(stemOf(name), PictureKind::kDisplay, made);
+    }
     return readPicture(stemOf(name).string() + ".png");
 }
 
-void checkGolden(const std::string& name, const Image& expected, const Image& actual, const char* made_by, double least_db) {
+void checkGolden(const std::string& name, const Image& expected, const Image& actual, const char* made_by,
+                 double least_db) {
     INFO("name ", name, ", made_by ", made_by);
     CHECK(compare(expected, actual).psnrDb() >= least_db);
 }
@@ -38,7 +43,8 @@ std::array<Eye, 2> eyesAt(const Eye& start, int frame) {
     Eye eye = start;
     const glm::dvec3 step(0.003 * frame, 0.004 * std::sin(0.5 * frame), 0.001 * frame);
     eye.world_from_camera.position += eye.world_from_camera.orientation * step;
-    eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(0.003 * frame, glm::dvec3(0, 1, 0)) *
+    eye.world_from_camera.orientation = eye.world_from_camera.orientation *
+                                        glm::angleAxis(0.003 * frame, glm::dvec3(0, 1, 0)) *
                                         glm::angleAxis(0.01 * std::sin(0.3 * frame), glm::dvec3(1, 0, 0));
     return stereoPair(eye, 0.063);
 }
@@ -61,11 +67,14 @@ Image besideEachOther(const std::array<Image, 2>& pair) {
 Scene sceneAt(int frame) { return test::shakenAtelier(4 * (frame / 2), 1000); }
 constexpr double kSceneRate = 45.0, kDisplayRate = 90.0;
 
-TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in full and where an eye that looks aside sees less") {
+TEST_CASE_FIXTURE(Gpu,
+                  "the golden pictures are what twin and device render, in full and where an eye that looks "
+                  "aside sees less") {
     const Gaze aside{{-3.0, 1.0, -2.0}, 0.0};
     Image in_full;
-    for (const auto& [name, scene, splats] : {std::tuple("fence", "builtin:fence", 0u), std::tuple("atelier", "builtin:atelier", 20000u),
-                                              std::tuple("atelier-aside", "builtin:atelier", 20000u)}) {
+    for (const auto& [name, scene, splats] :
+         {std::tuple("fence", "builtin:fence", 0u), std::tuple("atelier", "builtin:atelier", 20000u),
+          std::tuple("atelier-aside", "builtin:atelier", 20000u)}) {
         const ViewedScene view = test::viewBuiltin(scene, {192, 192}, splats);
         FrameSettings settings;
         settings.mode = Mode::kMono;
@@ -73,7 +82,8 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
         Image twin;
         if (settings.half_periphery) {
             settings.gazes[0] = aside;
-            const auto made = reference::renderCoarse(view.scene, view.eye, {aside.direction, aside.clear_rad}, {});
+            const auto made =
+                reference::renderCoarse(view.scene, view.eye, {aside.direction, aside.clear_rad}, {});
             CHECK(std::ranges::count(made.coarse, 1) > 20);
             twin = test::toImage(made.picture);
             CHECK(compare(twin, in_full).psnrDb() < kLeastDb);
@@ -82,7 +92,8 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
         }
         const Image expected = readGolden(name, twin);
         checkGolden(name, expected, twin, "twin", kLeastDb);
-        checkGolden(name, expected, test::renderMono(context(), view.scene, view.eye, settings).picture, "device", kLeastDb);
+        checkGolden(name, expected, test::renderMono(context(), view.scene, view.eye, settings).picture,
+                    "device", kLeastDb);
     }
 }
 
@@ -91,7 +102,8 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what it was") {
     const test::Folder folder;
     test::writeFilm(folder.file("film"), kFrames / 2 + 1, [](int frame) { return sceneAt(2 * frame); });
-    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kSceneRate, .memory_bytes = 1});
+    MovingScene moving(context(), SceneSeries(folder.file("film")),
+                       {.rate_hz = kSceneRate, .memory_bytes = 1});
     test::KeptFrame frame(context(), moving.scene());
     FrameSettings settings;
     settings.mode = Mode::kTemporal;
@@ -110,8 +122,8 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what 
     // What moved is shown where it is now, not where it was.
     const auto eyes = eyesAt(start, kFrames);
     const auto fullOf = [&](const Scene& scene) {
-        return besideEachOther(
-            {test::toImage(reference::render(scene, eyes[kLeft], {})), test::toImage(reference::render(scene, eyes[kRight], {}))});
+        return besideEachOther({test::toImage(reference::render(scene, eyes[kLeft], {})),
+                                test::toImage(reference::render(scene, eyes[kRight], {}))});
     };
     const double now_db = compare(fullOf(sceneAt(kFrames)), device).psnrDb();
     CHECK(now_db > 35.0);

@@ -15,14 +15,17 @@ struct ViewedScene {
 };
 
 inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
-    return {lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
+    return {lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px),
+            size_px};
 }
 
 // Each is made only once: baking the atelier's light takes longer than many tests.
 inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
     static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
     auto found = made.find({name, splats});
-    if (found == made.end()) { found = made.emplace(std::pair(name, splats), makeBuiltin(name, splats)).first; }
+    if (found == made.end()) {
+        found = made.emplace(std::pair(name, splats), makeBuiltin(name, splats)).first;
+    }
     return {name, found->second, eyeOf(*builtinView(name), size_px)};
 }
 
@@ -35,7 +38,8 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
     const auto draw = [&] { return drawUnit(random); };
     for (std::size_t i = 0; i < 300; ++i) {
         // t_u is along the line of sight except for a small angle, so the plane almost contains the eye.
-        const glm::dvec3 sight = glm::normalize(glm::dvec3(scene.positions[i]) - eye.world_from_camera.position);
+        const glm::dvec3 sight =
+            glm::normalize(glm::dvec3(scene.positions[i]) - eye.world_from_camera.position);
         const glm::dvec3 across = glm::normalize(glm::cross(sight, glm::dvec3(draw(), draw(), -draw())));
         const glm::dvec3 normal = glm::normalize(across + std::pow(10.0, -1.0 - 6.0 * draw()) * sight);
         const glm::dvec3 u = glm::normalize(sight - glm::dot(sight, normal) * normal);
@@ -47,7 +51,9 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
 }
 
 // For the constant kSplatKind of passes for which dimming makes no difference.
-inline std::uint32_t shapeOf(const Scene& scene) { return scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
+inline std::uint32_t shapeOf(const Scene& scene) {
+    return scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs;
+}
 
 // The same as 3D Gaussians, from as thick as their second axis to flat, with needles of 1e6. Some are within
 // reach of the near plane or beside the eye, where the linear projection breaks down; some have opacities
@@ -68,7 +74,9 @@ inline ViewedScene viewGaussians(glm::uvec2 size_px, bool antialiased) {
 inline Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
     Image image{size_px, 4, {}};
     for (const glm::dvec4& value : colours) {
-        for (int channel = 0; channel < 4; ++channel) { image.values.push_back(static_cast<float>(value[channel])); }
+        for (int channel = 0; channel < 4; ++channel) {
+            image.values.push_back(static_cast<float>(value[channel]));
+        }
     }
     return image;
 }
@@ -78,7 +86,9 @@ inline Image toImage(const reference::Picture& picture) { return toImage(picture
 template <typename... Values>
 Image toImage(glm::uvec2 size_px, const Values&... channels) {
     Image image{size_px, static_cast<int>(sizeof...(channels)), {}};
-    for (std::size_t i = 0; i < image.pixelCount(); ++i) { (image.values.push_back(static_cast<float>(channels[i])), ...); }
+    for (std::size_t i = 0; i < image.pixelCount(); ++i) {
+        (image.values.push_back(static_cast<float>(channels[i])), ...);
+    }
     return image;
 }
 

@@ -33,8 +33,8 @@ ViewedScene viewRoom() {
 std::array<Eye, 2> eyesAt(const Eye& middle, double step) {
     Eye eye = middle;
     eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
-    eye.world_from_camera.orientation =
-        eye.world_from_camera.orientation * glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
+    eye.world_from_camera.orientation = eye.world_from_camera.orientation *
+                                        glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
     return stereoPair(eye, 0.063);
 }
 
@@ -42,7 +42,10 @@ std::array<Eye, 2> eyesAt(const Eye& middle, double step) {
 class Walk {
 public:
     Walk(const Context& context, const FrameSettings& settings, ViewedScene view = viewAtelier())
-        : view_(std::move(view)), frame_(context, view_.scene), full_(StereoFrame::beside(frame_)), settings_(settings) {}
+        : view_(std::move(view)),
+          frame_(context, view_.scene),
+          full_(StereoFrame::beside(frame_)),
+          settings_(settings) {}
 
     FrameResult go(double step) { return go(step, view_.eye); }
     FrameResult go(double step, const Eye& start) {
@@ -75,9 +78,11 @@ private:
     std::array<Eye, 2> eyes_;
 };
 
-TEST_CASE_FIXTURE(Gpu, "where no history is kept, temporal is predicted and alternate is shared, frame after frame") {
+TEST_CASE_FIXTURE(
+    Gpu, "where no history is kept, temporal is predicted and alternate is shared, frame after frame") {
     const ViewedScene view = viewAtelier();
-    for (const auto& [mode, same] : {std::pair(Mode::kTemporal, Mode::kPredicted), std::pair(Mode::kAlternate, Mode::kShared)}) {
+    for (const auto& [mode, same] :
+         {std::pair(Mode::kTemporal, Mode::kPredicted), std::pair(Mode::kAlternate, Mode::kShared)}) {
         KeptFrame frame(context(), view.scene);
         const auto other = StereoFrame::beside(frame);
         for (int step = 0; step < 2; ++step) {
@@ -90,7 +95,8 @@ TEST_CASE_FIXTURE(Gpu, "where no history is kept, temporal is predicted and alte
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 frames, and then for good, for no work") {
+TEST_CASE_FIXTURE(
+    Gpu, "a head that stands still sees the full render within 30 frames, and then for good, for no work") {
     Walk walk(context(), makeSettings(Mode::kTemporal));
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
@@ -103,7 +109,9 @@ TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full render, parallel or canted, whatever room lists had") {
+TEST_CASE_FIXTURE(Gpu,
+                  "with work for nearly all both eyes are nearly the full render, parallel or canted, "
+                  "whatever room lists had") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     // Parallel eyes are rendered side by side, canted ones one after the other.
@@ -113,7 +121,8 @@ TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full r
         const auto full = StereoFrame::beside(frame);
         for (int step = 0; step < 5; ++step) {
             std::array<Eye, 2> eyes = eyesAt(view.eye, step);
-            eyes[1].world_from_camera.orientation = eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
+            eyes[1].world_from_camera.orientation =
+                eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
             const FrameResult result = frame.render(eyes, makeSettings(Mode::kTemporal, 0.9));
             if (step == 4) { CHECK(result.counters.commands == (cant > 0.0 ? 37u : 23u)); }
             full->render(eyes, makeSettings(Mode::kShared));
@@ -122,7 +131,8 @@ TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full r
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes and without a frame that costs more") {
+TEST_CASE_FIXTURE(
+    Gpu, "a walk keeps its quality within the budget, in both eyes and without a frame that costs more") {
     Walk walk(context(), makeSettings(Mode::kTemporal));
     walk.go(0.0);
     CHECK(walk.shown()[0].values == walk.full()[0].values);  // there was no history yet
@@ -150,7 +160,9 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spe
             const auto shown = walk.shown(), full = walk.full();
             for (std::size_t i = 0; i < shown[0].values.size(); ++i) {
                 const bool counts = i % 4 < 3 && 3 * (i / 4 % shown[0].size_px.x) < shown[0].size_px.x;
-                for (std::size_t e = 0; counts && e < 2; ++e) { error += std::pow(shown[e].values[i] - full[e].values[i], 2); }
+                for (std::size_t e = 0; counts && e < 2; ++e) {
+                    error += std::pow(shown[e].values[i] - full[e].values[i], 2);
+                }
             }
         }
         return error;
@@ -171,7 +183,8 @@ TEST_CASE_FIXTURE(Gpu, "after a jump of the head both eyes are rendered in full"
 }
 
 // The resolution changes as when a governor looks for the one that holds the rate.
-TEST_CASE_FIXTURE(Gpu, "a history comes from less than the way to the other eye; without one a frame is waited for") {
+TEST_CASE_FIXTURE(
+    Gpu, "a history comes from less than the way to the other eye; without one a frame is waited for") {
     constexpr double kStepMetres = 0.0033166;  // the step of eyesAt
     const auto countFull = [](Walk& walk) {
         const auto shown = walk.shown(), full = walk.full();
@@ -201,11 +214,16 @@ TEST_CASE_FIXTURE(Gpu, "a history comes from less than the way to the other eye;
     CHECK(told[4] == 4);  // reported at once
 }
 
-TEST_CASE_FIXTURE(Gpu, "a history of another size or of other angles is a history like any other, also when both change in each frame") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a history of another size or of other angles is a history like any other, also when both "
+                  "change in each frame") {
     Walk walk(context(), makeSettings(Mode::kTemporal, 0.4));
     for (int step = 0; step < 8; ++step) {
         Eye eye = viewAtelier().eye;
-        const double scale = step % 3 == 0 ? 1.0 : step % 3 == 1 ? 0.85 : 1.15, zoom = step % 2 == 0 ? 1.0 : 1.04;
+        const double scale = step % 3 == 0   ? 1.0
+                             : step % 3 == 1 ? 0.85
+                                             : 1.15,
+                     zoom = step % 2 == 0 ? 1.0 : 1.04;
         const Intrinsics k = eye.intrinsics;
         const double pixels = std::floor(eye.size_px.x * scale) / eye.size_px.x;
         eye.size_px = glm::uvec2(glm::dvec2(eye.size_px) * scale);
@@ -216,7 +234,9 @@ TEST_CASE_FIXTURE(Gpu, "a history of another size or of other angles is a histor
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the other is what its last full render shows from there") {
+TEST_CASE_FIXTURE(Gpu,
+                  "alternate renders one eye in full, in turn, and the other is what its last full render "
+                  "shows from there") {
     Walk walk(context(), makeSettings(Mode::kAlternate));
     walk.go(0.0);
     std::array<int, 2> turns{};
@@ -244,11 +264,15 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a hist
         // in the left eye's order, which may differ by rounding
         CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);
         CHECK(walk.psnr() > 40.0);
-        CHECK(std::ranges::any_of(result.left_out, [](const std::string& sentence) { return sentence.starts_with("reprojection: "); }));
+        CHECK(std::ranges::any_of(result.left_out, [](const std::string& sentence) {
+            return sentence.starts_with("reprojection: ");
+        }));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see what it sees without a history, for next to no work") {
+TEST_CASE_FIXTURE(Gpu,
+                  "with coarse tiles, a head that stands still comes to see what it sees without a history, "
+                  "for next to no work") {
     Walk walk(context(), withCoarse(Mode::kTemporal), viewRoom());
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }

@@ -11,7 +11,8 @@ std::vector<double> planeAt(const Eye& eye, const glm::dvec3& normal, double dis
     std::vector<double> depths;
     for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
         for (std::uint32_t x = 0; x < eye.size_px.x; ++x) {
-            const glm::dvec3 ray((x + 0.5 - eye.intrinsics.cx) / eye.intrinsics.fx, (y + 0.5 - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0);
+            const glm::dvec3 ray((x + 0.5 - eye.intrinsics.cx) / eye.intrinsics.fx,
+                                 (y + 0.5 - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0);
             depths.push_back(distance / glm::dot(normal, ray));
         }
     }
@@ -23,10 +24,13 @@ Scene makeMist(std::size_t splats, bool gaussians) {
     Scene scene;
     scene.name = "mist";
     std::mt19937 random(7);
-    const auto draw = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
+    const auto draw = [&](float low, float high) {
+        return std::uniform_real_distribution<float>(low, high)(random);
+    };
     for (std::size_t i = 0; i < splats; ++i) {
         scene.positions.emplace_back(draw(-1.5f, 1.5f), draw(-1.2f, 1.2f), draw(1.5f, 4.5f));
-        scene.rotations.push_back(glm::normalize(glm::quat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1))));
+        scene.rotations.push_back(
+            glm::normalize(glm::quat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1))));
         scene.scales.emplace_back(draw(0.05f, 0.3f), draw(0.05f, 0.3f));
         if (gaussians) { scene.thicknesses.push_back(draw(0.01f, 0.05f)); }
         scene.opacities.push_back(draw(0.1f, 0.7f));
@@ -41,15 +45,18 @@ int countOff(const Image& seen, const reference::Picture& twin, double most) {
     for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
         double worst = 0.0;
         for (int c = 0; c < 4; ++c) {
-            worst = std::max(worst, std::abs(static_cast<double>(seen.values[4 * i + static_cast<std::size_t>(c)]) - twin.rgba[i][c]));
+            worst = std::max(worst,
+                             std::abs(static_cast<double>(seen.values[4 * i + static_cast<std::size_t>(c)]) -
+                                      twin.rgba[i][c]));
         }
         off += worst > most ? 1 : 0;
     }
     return off;
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a slanted plane through a cloud hides at every pixel what its twin hides, of discs and of Gaussians, for one eye and both") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a slanted plane through a cloud hides at every pixel what its twin hides, of discs and of "
+                  "Gaussians, for one eye and both") {
     Eye eye{{}, intrinsicsFromFovX(1.0, {100, 84}), {100, 84}};
     const glm::dvec3 normal = glm::normalize(glm::dvec3(0.5, 0.3, 1.0));
     for (const bool gaussians : {false, true}) {
@@ -58,7 +65,8 @@ TEST_CASE_FIXTURE(
         KeptFrame frame(context(), scene);
         for (const Mode mode : {Mode::kMono, Mode::kTwoPass, Mode::kShared}) {
             const std::array<Eye, 2> pair = stereoPair(eye, 0.063);
-            const std::vector<Eye> eyes = mode == Mode::kMono ? std::vector<Eye>{eye} : std::vector<Eye>{pair.begin(), pair.end()};
+            const std::vector<Eye> eyes =
+                mode == Mode::kMono ? std::vector<Eye>{eye} : std::vector<Eye>{pair.begin(), pair.end()};
             FrameSettings settings;
             settings.mode = mode;
             settings.background = glm::dvec3(0.1, 0.2, 0.3);
@@ -67,7 +75,9 @@ TEST_CASE_FIXTURE(
             for (std::size_t e = 0; e < eyes.size(); ++e) {
                 planes[e] = planeAt(eyes[e], normal, 2.5 + 0.1 * static_cast<double>(e));
                 std::vector<float> stored;
-                for (const double z : planes[e]) { stored.push_back(static_cast<float>(kScale / z + kOffset)); }
+                for (const double z : planes[e]) {
+                    stored.push_back(static_cast<float>(kScale / z + kOffset));
+                }
                 meshes[e] = upload("mesh depths", stored);
                 settings.mesh_depths[e] = MeshDepths{meshes[e].address<float>(), kScale, kOffset};
             }
@@ -90,7 +100,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a mesh behind everything hides nothing, to the last bit, and one before everything all") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a mesh behind everything hides nothing, to the last bit, and one before everything all") {
     const Scene mist = makeMist(300, false);
     const GpuScene scene(context(), mist);
     KeptFrame frame(context(), scene);

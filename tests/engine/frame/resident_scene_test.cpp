@@ -24,15 +24,19 @@ struct Atelier : Gpu {
 std::vector<Eye> eyesFor(Mode mode, const Eye& middle, double cant = 0.0) {
     if (mode == Mode::kMono) { return {middle}; }
     std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
-    eyes[1].world_from_camera.orientation = eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
+    eyes[1].world_from_camera.orientation =
+        eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
     return {eyes.begin(), eyes.end()};
 }
 
 // The values of each eye's picture.
-std::vector<std::vector<float>> render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings) {
+std::vector<std::vector<float>> render(StereoFrame& frame, const std::vector<Eye>& eyes,
+                                       const FrameSettings& settings) {
     frame.render(eyes, settings);
     std::vector<std::vector<float>> pictures;
-    for (int e = 0; e < static_cast<int>(eyes.size()); ++e) { pictures.push_back(frame.readPicture(e).values); }
+    for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {
+        pictures.push_back(frame.readPicture(e).values);
+    }
     return pictures;
 }
 
@@ -46,9 +50,11 @@ std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     return some;
 }
 
-constexpr std::array kModes{Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
+constexpr std::array kModes{Mode::kMono,      Mode::kTwoPass,   Mode::kShared,  Mode::kPaper,
+                            Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
 
-void checkPagesAreTheScene(const Context& context, const Scene& in_order, const Eye& start, std::span<const Mode> modes, double cant) {
+void checkPagesAreTheScene(const Context& context, const Scene& in_order, const Eye& start,
+                           std::span<const Mode> modes, double cant) {
     const GpuScene whole(context, in_order);
     for (const Mode mode : modes) {
         INFO("mode ", static_cast<int>(mode), ", cant ", cant);
@@ -71,21 +77,26 @@ TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte fo
     const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kPaper}, 0.0);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kTemporal}, 0.05);
-    checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye, std::array{Mode::kMono}, 0.0);
+    checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye,
+                          std::array{Mode::kMono}, 0.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte, in every mode" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte, in every mode" *
+                           test::nightly()) {
     const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
     checkPagesAreTheScene(context(), view.scene, view.eye, kModes, 0.0);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::span(kModes).subspan(1), 0.05);
     checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, whatever came and went, and hundreds of changes take no memory") {
+TEST_CASE_FIXTURE(Gpu,
+                  "what is there is seen, and nothing else, whatever came and went, and hundreds of changes "
+                  "take no memory") {
     const ViewedScene view = viewAtelier({160, 144});
     constexpr std::uint32_t kParts = 16;
     const std::vector<Scene> parts = inParts(view.scene, kParts);
-    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + kParts});
+    ResidentScene resident(context(), traitsOf(view.scene),
+                           {.capacity_pages = test::pagesOf(view.scene.size()) + kParts});
     KeptFrame frame(context(), resident.scene());
     std::vector<std::optional<ResidentScene::Part>> there(parts.size());
     std::mt19937 random(5);
@@ -107,7 +118,8 @@ TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, whatever came a
         const auto pictures = test::picturesOf(frame);
         std::vector<std::uint32_t> splats;
         for (std::size_t p = 0; p < kParts; ++p) {
-            for (std::size_t i = p * view.scene.size() / kParts; there[p] && i < (p + 1) * view.scene.size() / kParts; ++i) {
+            for (std::size_t i = p * view.scene.size() / kParts;
+                 there[p] && i < (p + 1) * view.scene.size() / kParts; ++i) {
                 splats.push_back(static_cast<std::uint32_t>(i));
             }
         }
@@ -145,9 +157,11 @@ TEST_CASE_FIXTURE(Atelier, "a fade multiplies opacities, and at 0 nothing is see
     }
 }
 
-TEST_CASE_FIXTURE(Atelier, "a part that is longer than what a frame may bring is seen once all of it is there") {
+TEST_CASE_FIXTURE(Atelier,
+                  "a part that is longer than what a frame may bring is seen once all of it is there") {
     const std::uint32_t pages = test::pagesOf(view.scene.size());
-    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = pages, .most_bytes_a_frame = 1});
+    ResidentScene resident(context(), traitsOf(view.scene),
+                           {.capacity_pages = pages, .most_bytes_a_frame = 1});
     const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
     KeptFrame frame(context(), resident.scene());
     const std::vector<Eye> eyes{view.eye};
@@ -182,7 +196,8 @@ TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused,
     CHECK_THROWS_AS(PackedPages(test::viewGaussians({16, 16}, false).scene, resident.traits()), Error);
 }
 
-TEST_CASE_FIXTURE(Gpu, "colours of fewer SH bands than the scene's are as they are, those of more lose the higher ones") {
+TEST_CASE_FIXTURE(
+    Gpu, "colours of fewer SH bands than the scene's are as they are, those of more lose the higher ones") {
     ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 80}, 4000);
     REQUIRE(view.scene.sh_degree > 0);
     Scene flat = view.scene;
@@ -190,7 +205,8 @@ TEST_CASE_FIXTURE(Gpu, "colours of fewer SH bands than the scene's are as they a
     limitShDegree(flat, 0, notes);
     KeptFrame other(context(), flat);
     const auto wanted = render(other, {view.eye}, makeSettings(Mode::kMono));
-    for (const auto& [scene, traits] : {std::pair(&flat, traitsOf(view.scene)), std::pair(&view.scene, traitsOf(flat))}) {
+    for (const auto& [scene, traits] :
+         {std::pair(&flat, traitsOf(view.scene)), std::pair(&view.scene, traitsOf(flat))}) {
         ResidentScene resident(context(), traits, {.capacity_pages = test::pagesOf(scene->size())});
         REQUIRE(resident.add(PackedPages(*scene, traits)).has_value());
         other.show(resident.scene());
@@ -213,12 +229,16 @@ TEST_CASE_FIXTURE(Atelier, "kernels that are made ahead leave what has come to t
 
 TEST_CASE("frames go on while parts come and go, though the device has not begun") {
     vk::PhysicalDeviceTimelineSemaphoreFeatures waits_for_host(VK_TRUE);
-    const Context context({.device = {}, .validation = true, .max_allocation_bytes = 0, .device_features = &waits_for_host});
+    const Context context(
+        {.device = {}, .validation = true, .max_allocation_bytes = 0, .device_features = &waits_for_host});
     const ViewedScene view = viewAtelier();
     const std::vector<Scene> parts = inParts(view.scene, 4);
-    ResidentScene resident(context, traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 4});
+    ResidentScene resident(context, traitsOf(view.scene),
+                           {.capacity_pages = test::pagesOf(view.scene.size()) + 4});
     std::vector<ResidentScene::Part> there;
-    for (const Scene& part : parts) { there.push_back(resident.add(PackedPages(part, resident.traits())).value()); }
+    for (const Scene& part : parts) {
+        there.push_back(resident.add(PackedPages(part, resident.traits())).value());
+    }
     StereoFrame frame(context, resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     frame.renderAhead(eyes, makeSettings(Mode::kShared));
@@ -230,7 +250,8 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     const auto values = vk::TimelineSemaphoreSubmitInfo().setWaitSemaphoreValues(kOpen);
     const vk::PipelineStageFlags stages = vk::PipelineStageFlagBits::eAllCommands;
     const vk::raii::CommandPool pool = context.device().createCommandPool({{}, context.queueFamily()});
-    const vk::raii::CommandBuffers hold(context.device(), vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1));
+    const vk::raii::CommandBuffers hold(
+        context.device(), vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1));
     hold[0].begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
     hold[0].pipelineBarrier(stages, stages, {}, {}, {}, {});
     hold[0].end();
@@ -253,17 +274,22 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
 
 TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is cut short for it") {
     const std::vector<Scene> parts = inParts(view.scene, 8);
-    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 8});
+    ResidentScene resident(context(), traitsOf(view.scene),
+                           {.capacity_pages = test::pagesOf(view.scene.size()) + 8});
     KeptFrame frame(context(), resident.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     for (std::size_t step = 0; step < 24; ++step) {
-        if (step % 3 == 0) { REQUIRE(resident.add(PackedPages(parts[step / 3], resident.traits())).has_value()); }
+        if (step % 3 == 0) {
+            REQUIRE(resident.add(PackedPages(parts[step / 3], resident.traits())).has_value());
+        }
         frame.renderAhead(eyes, makeSettings(Mode::kShared));
     }
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from their histories are right again within some frames") {
+TEST_CASE_FIXTURE(Gpu,
+                  "where a part is exchanged, pictures that are made from their histories are right again "
+                  "within some frames") {
     const ViewedScene view = viewAtelier({160, 144});
     // What stands in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
@@ -271,9 +297,12 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
     for (float& value : other.sh) { value = -value; }
     for (const bool fades : {false, true}) {
         CAPTURE(fades);
-        ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 24});
+        ResidentScene resident(context(), traitsOf(view.scene),
+                               {.capacity_pages = test::pagesOf(view.scene.size()) + 24});
         std::vector<ResidentScene::Part> there;
-        for (const Scene& part : parts) { there.push_back(resident.add(PackedPages(part, resident.traits())).value()); }
+        for (const Scene& part : parts) {
+            there.push_back(resident.add(PackedPages(part, resident.traits())).value());
+        }
         // The other frames are recorded after the first, which brings the changes.
         KeptFrame first(context(), resident.scene());
         const auto second = StereoFrame::beside(first), full = StereoFrame::beside(first);
@@ -285,12 +314,14 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
         };
         const auto psnrs = [&] {
             eye.world_from_camera.position.x = view.eye.world_from_camera.position.x + 0.002 * ++step;
-            const auto shown = go(first, Mode::kTemporal), too = go(*second, Mode::kTemporal), wanted = go(*full, Mode::kShared);
+            const auto shown = go(first, Mode::kTemporal), too = go(*second, Mode::kTemporal),
+                       wanted = go(*full, Mode::kShared);
             return std::array{test::psnrDb(shown, wanted), test::psnrDb(too, wanted)};
         };
         std::array<double, 2> before{}, after{};
         for (int frame = 0; frame < 12; ++frame) { before = psnrs(); }
-        const ResidentScene::Part come = resident.add(PackedPages(other, resident.traits()), fades ? 0.0f : 1.0f).value();
+        const ResidentScene::Part come =
+            resident.add(PackedPages(other, resident.traits()), fades ? 0.0f : 1.0f).value();
         if (fades) {
             for (int frame = 1; frame <= 4; ++frame) {
                 resident.setFade(come, 0.25f * static_cast<float>(frame));
@@ -307,14 +338,16 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pages that may be seen, and says how many") {
+TEST_CASE_FIXTURE(
+    Gpu, "of a scene that is seen in part, a frame looks at the pages that may be seen, and says how many") {
     ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 96}, 100000);
     view.scene = test::inMortonOrder(view.scene);
     const std::uint32_t pages = test::pagesOf(view.scene.size());
     std::vector<reference::Page> bounds;
     for (std::uint32_t p = 0; p < pages; ++p) {
         const std::size_t first = std::size_t{p} * gpu::kPageSplats;
-        bounds.push_back(reference::boundPage(view.scene, first, std::min<std::size_t>(gpu::kPageSplats, view.scene.size() - first)));
+        bounds.push_back(reference::boundPage(
+            view.scene, first, std::min<std::size_t>(gpu::kPageSplats, view.scene.size() - first)));
     }
     const test::WholeInPages whole(context(), view.scene, 50);
     KeptFrame frame(context(), whole.resident.scene());
@@ -335,7 +368,8 @@ TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pa
         for (std::size_t i = 0; i < visible.size(); ++i) {
             if (visible[i] != 0) { needed.insert(i / gpu::kPageSplats); }
         }
-        CHECK(static_cast<double>(countOf(result, "pages_seen")) <= 2.5 * static_cast<double>(needed.size()) + 4.0);
+        CHECK(static_cast<double>(countOf(result, "pages_seen")) <=
+              2.5 * static_cast<double>(needed.size()) + 4.0);
     }
 }
 

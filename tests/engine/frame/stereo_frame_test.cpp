@@ -12,7 +12,9 @@ FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     return settings;
 }
 
-ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
+ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) {
+    return test::viewBuiltin("builtin:atelier", size_px, 20000);
+}
 
 bool allFinite(const Image& image) { return compare(image, image, image.channels).not_finite == 0; }
 
@@ -22,11 +24,14 @@ bool isAlike(const Image& a, const Image& b) {
     return difference.not_finite == 0 && difference.psnrDb() >= 80.0 && difference.shareOff() <= 0.0002;
 }
 
-TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, parallel or canted, by depth or by distance, of any kind of splats") {
+TEST_CASE_FIXTURE(Gpu,
+                  "sharing what eyes can share changes no byte, parallel or canted, by depth or by distance, "
+                  "of any kind of splats") {
     ViewedScene atelier = viewAtelier();
     atelier.eye.world_from_camera.orientation =
         glm::normalize(atelier.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));
-    for (const ViewedScene& view : {atelier, test::viewGaussians({96, 80}, false), test::viewGaussians({96, 80}, true)}) {
+    for (const ViewedScene& view :
+         {atelier, test::viewGaussians({96, 80}, false), test::viewGaussians({96, 80}, true)}) {
         CAPTURE(view.name);
         KeptFrame frame(context(), view.scene);
         for (const Side dominant : {kLeft, kRight}) {
@@ -49,7 +54,9 @@ TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, parallel or
                 settings.mode = Mode::kShared;
                 const FrameResult result = frame.render(eyes, settings);
                 CHECK(test::shownBy(frame) == apart_by_distance);
-                CHECK(std::ranges::count_if(result.gpu_ms, [](const auto& pass) { return pass.label.pass == "sort_depth"; }) == 1);
+                CHECK(std::ranges::count_if(result.gpu_ms, [](const auto& pass) {
+                          return pass.label.pass == "sort_depth";
+                      }) == 1);
                 if (view.scene.isGaussian3d()) { continue; }
                 for (std::size_t e = 0; e < 2; ++e) {
                     const auto twin = reference::render(view.scene, eyes[e], {.order_from = middleOf(eyes)});
@@ -65,9 +72,11 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
     for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         for (const double canting_rad : {0.0, glm::radians(5.0)}) {
             INFO("nameOf(mode) ", nameOf(mode), ", canting_rad ", canting_rad);
-            const auto made = renderPair(context(), view.scene, test::headsetEyes(view.eye, canting_rad), makeSettings(mode));
+            const auto made = renderPair(context(), view.scene, test::headsetEyes(view.eye, canting_rad),
+                                         makeSettings(mode));
             const auto ran = [&](const char* pass) {
-                return std::ranges::any_of(made.result.gpu_ms, [&](const auto& one) { return one.label.text() == pass; });
+                return std::ranges::any_of(made.result.gpu_ms,
+                                           [&](const auto& one) { return one.label.text() == pass; });
             };
             // Along rows, resample moves the pixels itself.
             CHECK(ran("affiliated reproject") == (canting_rad > 0.0));
@@ -79,8 +88,9 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
 TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by distance and pops by depth") {
     // Both discs cover the ray x = y = 0. Red is nearer by 1 %; when the eye turns towards it by more than
     // tan a = 0.02, its centre is the deeper one.
-    const Scene scene = test::makeScene({{.position = {0.5f, 0.0f, 2.0f}, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}},
-                                         {.position = {-0.5f, 0.0f, 2.02f}, .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}}});
+    const Scene scene = test::makeScene(
+        {{.position = {0.5f, 0.0f, 2.0f}, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}},
+         {.position = {-0.5f, 0.0f, 2.02f}, .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}}});
     for (const Order order : {Order::kDepth, Order::kDistance}) {
         FrameSettings settings = makeSettings(Mode::kMono);
         settings.order = order;
@@ -88,7 +98,8 @@ TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by di
             CAPTURE(tenths);
             // With a focal length of 100 px, so the ray passes through a pixel's centre again.
             Eye eye = test::makeEye({101, 101});
-            eye.world_from_camera.orientation = glm::angleAxis(std::atan(0.1 * tenths), glm::dvec3(0.0, 1.0, 0.0));
+            eye.world_from_camera.orientation =
+                glm::angleAxis(std::atan(0.1 * tenths), glm::dvec3(0.0, 1.0, 0.0));
             const Image picture = renderMono(context(), scene, eye, settings).picture;
             const float* pixel = &picture.values[4 * (50 * 101 + 50 - 10 * static_cast<std::size_t>(tenths))];
             const bool red_first = order == Order::kDistance || tenths <= 0;
@@ -112,7 +123,8 @@ TEST_CASE_FIXTURE(Gpu, "a scene split over several allocations gives the same pi
 
 TEST_CASE_FIXTURE(Gpu, "the number of threads of a cell does not show") {
     const std::array views{viewAtelier(), test::viewCloud({100, 75})};
-    const std::array<GpuScene, 2> scenes{GpuScene(context(), views[0].scene), GpuScene(context(), views[1].scene)};
+    const std::array<GpuScene, 2> scenes{GpuScene(context(), views[0].scene),
+                                         GpuScene(context(), views[1].scene)};
     std::array<Image, 2> first;
     for (const std::uint32_t threads : {8u, 16u, 32u, 64u}) {
         CAPTURE(threads);
@@ -139,28 +151,34 @@ TEST_CASE_FIXTURE(Gpu, "where no splat is seen there is the background, without 
         const Eye eye = test::eyeOf(*builtinView("fence"), {40, 24});
         const auto frame = renderMono(context(), *scene, eye, settings);
         for (std::size_t i = 0; i < frame.picture.pixelCount(); ++i) {
-            REQUIRE(
-                std::equal(&frame.picture.values[4 * i], &frame.picture.values[4 * i] + 4, std::array{0.25f, 0.5f, 0.75f, 0.0f}.begin()));
+            REQUIRE(std::equal(&frame.picture.values[4 * i], &frame.picture.values[4 * i] + 4,
+                               std::array{0.25f, 0.5f, 0.75f, 0.0f}.begin()));
             REQUIRE(frame.depth.values[i] == 0.0f);
         }
         CHECK(frame.result.counters.named().at("tile_pairs") == 0);
     }
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
-        const auto pair = renderPair(context(), empty, stereoPair(test::eyeOf(*builtinView("fence"), {40, 24}), 0.063), makeSettings(mode));
+        const auto pair =
+            renderPair(context(), empty, stereoPair(test::eyeOf(*builtinView("fence"), {40, 24}), 0.063),
+                       makeSettings(mode));
         CHECK(std::all_of(pair.pictures[kRight].values.begin(), pair.pictures[kRight].values.end(),
                           [](float value) { return value == 0.0f; }));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "images of odd sizes are rendered as the twin renders them, down to one pixel, and eyes may differ in size") {
+TEST_CASE_FIXTURE(Gpu,
+                  "images of odd sizes are rendered as the twin renders them, down to one pixel, and eyes "
+                  "may differ in size") {
     const ViewedScene view = viewAtelier();
     KeptFrame frame(context(), view.scene);
-    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(3, 200), glm::uvec2(31, 16)}) {
+    for (const glm::uvec2 size_px :
+         {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(3, 200), glm::uvec2(31, 16)}) {
         CAPTURE(size_px.x);
         const Eye eye = viewAtelier(size_px).eye;
         frame.render({&eye, 1}, makeSettings(Mode::kMono));
         CHECK(allFinite(frame.readDominantDepth()));
-        CHECK(compare(frame.readPicture(0), test::toImage(reference::render(view.scene, eye, {})), 4).psnrDb() >= 80.0);
+        CHECK(compare(frame.readPicture(0), test::toImage(reference::render(view.scene, eye, {})), 4)
+                  .psnrDb() >= 80.0);
     }
     std::array<Eye, 2> eyes = stereoPair(view.eye, 0.063);
     eyes[kRight].size_px = {100, 180};
@@ -172,13 +190,15 @@ TEST_CASE_FIXTURE(Gpu, "images of odd sizes are rendered as the twin renders the
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "walls beside the eye are finite along their horizon, where their depth has no bound") {
+TEST_CASE_FIXTURE(Gpu,
+                  "walls beside the eye are finite along their horizon, where their depth has no bound") {
     // Discs with t_u = y, t_v = z, t_w = x, whose centres lie beside and behind the eye: in the middle
     // column, 1/z is exactly 0.
     std::vector<test::Splat> splats;
     for (int i = 0; i < 20; ++i) {
         test::Splat splat;
-        splat.position = {i % 2 == 0 ? 1.0f : -1.0f, 0.3f * static_cast<float>(i % 5) - 0.6f, -0.5f * static_cast<float>(i / 5)};
+        splat.position = {i % 2 == 0 ? 1.0f : -1.0f, 0.3f * static_cast<float>(i % 5) - 0.6f,
+                          -0.5f * static_cast<float>(i / 5)};
         splat.rotation = glm::quat(0.5f, 0.5f, 0.5f, 0.5f);
         splat.scale = glm::vec2(0.5f * static_cast<float>(1 + i));
         splats.push_back(splat);
@@ -207,13 +227,16 @@ TEST_CASE_FIXTURE(Gpu, "eyes that change their roles take over what the other wa
 }
 
 TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
-    for (const ViewedScene& view : {viewAtelier({256, 256}), test::viewBuiltin("builtin:slanted-wall", {256, 256})}) {
+    for (const ViewedScene& view :
+         {viewAtelier({256, 256}), test::viewBuiltin("builtin:slanted-wall", {256, 256})}) {
         CAPTURE(view.name);
         const reference::Settings settings;
-        const auto visible = reference::compact(view.scene, reference::cull(view.scene, {&view.eye, 1}, settings), view.eye, settings);
+        const auto visible = reference::compact(
+            view.scene, reference::cull(view.scene, {&view.eye, 1}, settings), view.eye, settings);
         const auto splats = reference::project(view.scene, reference::sortDepth(visible), view.eye, settings);
         const auto pairs = static_cast<double>(reference::bin(splats, view.eye.size_px, settings).size());
-        const auto counters = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono)).result.counters.named();
+        const auto counters =
+            renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono)).result.counters.named();
         // Outlines are widened by 1/64 px (measured: 1.06 % more pairs here, where tiles are many times
         // larger than splats).
         CHECK(static_cast<double>(counters.at("tile_pairs")) == doctest::Approx(pairs).epsilon(0.015));
@@ -225,12 +248,12 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
     CHECK(deviceBytesPerSplat(0, false) <= 64);
     CHECK(deviceBytesPerSplat(3, false) <= 160);
     const FrameCapacity capacity{1024, 1024};  // so both lists grow to what is needed
-    for (const auto& [view, most_bytes] :
-         {std::pair(viewAtelier({256, 256}), 160.0), std::pair(test::viewBuiltin("builtin:fence", {256, 256}), 64.0)}) {
+    for (const auto& [view, most_bytes] : {std::pair(viewAtelier({256, 256}), 160.0),
+                                           std::pair(test::viewBuiltin("builtin:fence", {256, 256}), 64.0)}) {
         CAPTURE(view.name);
-        const auto counters =
-            renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono), {.first_capacity = capacity, .threads_per_cell = 0})
-                .result.counters.named();
+        const auto counters = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono),
+                                         {.first_capacity = capacity, .threads_per_cell = 0})
+                                  .result.counters.named();
         const auto splats = static_cast<double>(view.scene.size());
         CHECK(static_cast<double>(counters.at("scene_bytes")) <= most_bytes * splats);
         // Lists grow in steps of 1024.

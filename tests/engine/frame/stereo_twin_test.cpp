@@ -8,7 +8,9 @@ using reference::DepthChoice;
 using reference::TileKind;
 
 Mode modeOf(TileChoice method) {
-    return method == TileChoice::kNone ? Mode::kReproject : method == TileChoice::kPaper ? Mode::kPaper : Mode::kPredicted;
+    return method == TileChoice::kNone    ? Mode::kReproject
+           : method == TileChoice::kPaper ? Mode::kPaper
+                                          : Mode::kPredicted;
 }
 
 struct View {
@@ -18,8 +20,10 @@ struct View {
 };
 
 std::vector<View> makeViews() {
-    const auto room = test::viewBuiltin("builtin:atelier", {160, 120}, 20000), fence = test::viewBuiltin("builtin:fence", {160, 120});
-    const auto gaussians = test::viewGaussians({160, 120}, false), dimmed = test::viewGaussians({160, 120}, true);
+    const auto room = test::viewBuiltin("builtin:atelier", {160, 120}, 20000),
+               fence = test::viewBuiltin("builtin:fence", {160, 120});
+    const auto gaussians = test::viewGaussians({160, 120}, false),
+               dimmed = test::viewGaussians({160, 120}, true);
     return {{"room", room, stereoPair(room.eye, 0.063)},
             {"room, canted", room, test::headsetEyes(room.eye, glm::radians(5.0))},
             {"fence", fence, stereoPair(fence.eye, 0.12)},
@@ -40,24 +44,29 @@ constexpr Making kMakings[] = {{TileChoice::kNone, 0, false},          {TileChoi
                                {TileChoice::kPredicted, 100000, false}};
 
 // `full`: the twin's full render of the other eye.
-void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Making& making, const Image& full) {
-    INFO("seen.name ", seen.name, ", dominant ", static_cast<int>(dominant), ", making.method ", static_cast<int>(making.method),
-         ", making.move_cost ", making.move_cost, ", making.letter ", making.letter);
-    const reference::StereoSettings twin_settings{.choice = making.method,
-                                                  .depth_choice = making.letter ? DepthChoice::kSum : DepthChoice::kInverse,
-                                                  .forward = making.letter,
-                                                  .margin_px = 8,
-                                                  .center_rois = true,
-                                                  .budget = 0.15,
-                                                  .move_cost = making.move_cost};
-    const auto twin = reference::renderStereo(seen.view.scene, {seen.eyes[dominant], seen.eyes[1 - dominant]}, twin_settings, {});
+void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Making& making,
+                  const Image& full) {
+    INFO("seen.name ", seen.name, ", dominant ", static_cast<int>(dominant), ", making.method ",
+         static_cast<int>(making.method), ", making.move_cost ", making.move_cost, ", making.letter ",
+         making.letter);
+    const reference::StereoSettings twin_settings{
+        .choice = making.method,
+        .depth_choice = making.letter ? DepthChoice::kSum : DepthChoice::kInverse,
+        .forward = making.letter,
+        .margin_px = 8,
+        .center_rois = true,
+        .budget = 0.15,
+        .move_cost = making.move_cost};
+    const auto twin = reference::renderStereo(seen.view.scene, {seen.eyes[dominant], seen.eyes[1 - dominant]},
+                                              twin_settings, {});
     FrameSettings settings;
     settings.mode = modeOf(making.method);
     settings.dominant = dominant;
     settings.stereo = test::settingsOf(twin_settings);
     settings.per_eye = making.letter;
     const AffiliatedFrame made = test::makeAffiliated(frame, seen.eyes, settings);
-    const Image &picture = made.pictures[1 - dominant], twin_picture = test::toImage(full.size_px, twin.affiliated);
+    const Image &picture = made.pictures[1 - dominant],
+                twin_picture = test::toImage(full.size_px, twin.affiliated);
     // The device rounds errors down pixel by pixel, so among tiles that are nearly alike, such as those of
     // the fence's equal bars, it may choose others; they are then worth as much.
     std::vector<std::uint32_t> same_kind;
@@ -71,11 +80,14 @@ void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Makin
     const auto other_kinds = std::count(same_kind.begin(), same_kind.end(), 0u);
     std::size_t other_classes = 0;
     for (std::size_t i = 0; i < twin.resolved.size(); ++i) {
-        const std::size_t tile = i / full.size_px.x / 16 * ((full.size_px.x + 15) / 16) + i % full.size_px.x / 16;
+        const std::size_t tile =
+            i / full.size_px.x / 16 * ((full.size_px.x + 15) / 16) + i % full.size_px.x / 16;
         if (made.tile_kinds[tile] != 0) { continue; }
-        other_classes += made.pixel_classes[i] == static_cast<std::uint8_t>(twin.resolved[i].pixel_class) ? 0 : 1;
+        other_classes +=
+            made.pixel_classes[i] == static_cast<std::uint8_t>(twin.resolved[i].pixel_class) ? 0 : 1;
     }
-    const Difference difference = compare(test::keepTiles(picture, same_kind), test::keepTiles(twin_picture, same_kind), 4);
+    const Difference difference =
+        compare(test::keepTiles(picture, same_kind), test::keepTiles(twin_picture, same_kind), 4);
     CHECK(difference.not_finite == 0);
     CHECK(difference.psnrDb() >= 80.0);      // measured: 84.5 and more; of 3D Gaussians 81.3
     CHECK(difference.shareOff() <= 0.0001);  // measured: none
@@ -114,10 +126,13 @@ void checkEverySecond(const Context& context, std::size_t first) {
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for places that round to another pixel") {
+TEST_CASE_FIXTURE(Gpu,
+                  "the device's stereo frames are the twin's, but for places that round to another pixel") {
     checkEverySecond(context(), 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "the device's other stereo frames are the twin's, too" * test::nightly()) { checkEverySecond(context(), 1); }
+TEST_CASE_FIXTURE(Gpu, "the device's other stereo frames are the twin's, too" * test::nightly()) {
+    checkEverySecond(context(), 1);
+}
 
 }  // SUITE(stereo_twin)

@@ -10,7 +10,8 @@ constexpr float kNear = 0.25f;
 std::vector<float> presentDepths(Gpu& gpu, StereoFrame& frame, int eye) {
     const Picture& picture = frame.picture(eye);
     const std::size_t count = std::size_t{picture.size_px.x} * picture.size_px.y;
-    const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", count), depths = gpu.allocate<float>("depths", count);
+    const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", count),
+                 depths = gpu.allocate<float>("depths", count);
     gpu::PresentPass pass{};
     pass.colours = picture.colours.address<gpu::vec4>();
     pass.half_colours = picture.colours.address<gpu::uvec2>();
@@ -21,7 +22,9 @@ std::vector<float> presentDepths(Gpu& gpu, StereoFrame& frame, int eye) {
     pass.size_px = picture.size_px;
     pass.depth_scale = kNear;
     const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = picture.half_floats});
-    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (picture.size_px.x + 15) / 16, (picture.size_px.y + 7) / 8); });
+    gpu.run([&](Commands& commands) {
+        commands.dispatch(kernel, pass, (picture.size_px.x + 15) / 16, (picture.size_px.y + 7) / 8);
+    });
     std::vector<float> found = gpu.readBack<float>(depths, count);
     for (float& depth : found) { depth = depth > 0.0f ? kNear / depth : 0.0f; }
     return found;
@@ -44,10 +47,13 @@ BetweenWalls countBetween(Gpu& gpu, StereoFrame& frame, const Eye& eye, int side
             continue;
         }
         const glm::dvec2 at = glm::dvec2(i % eye.size_px.x, i / eye.size_px.x) + 0.5;
-        const glm::dvec3 ray((at.x - eye.intrinsics.cx) / eye.intrinsics.fx, (at.y - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0);
+        const glm::dvec3 ray((at.x - eye.intrinsics.cx) / eye.intrinsics.fx,
+                             (at.y - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0);
         const double along = (eye.world_from_camera.orientation * ray).z;
         const auto isOff = [&](double depth) {
-            const auto isAt = [&](double wall) { return std::abs(depth * along + eye.world_from_camera.position.z - wall) < 0.03 * wall; };
+            const auto isAt = [&](double wall) {
+                return std::abs(depth * along + eye.world_from_camera.position.z - wall) < 0.03 * wall;
+            };
             return !isAt(2.0) && !isAt(4.0);
         };
         between.submitted += isOff(static_cast<double>(depths[i])) ? 1 : 0;
@@ -57,7 +63,8 @@ BetweenWalls countBetween(Gpu& gpu, StereoFrame& frame, const Eye& eye, int side
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "a pixel at a wall's edge has the depth of that wall or of the one behind, in tiles that are rendered and reprojected") {
+                  "a pixel at a wall's edge has the depth of that wall or of the one behind, in tiles that "
+                  "are rendered and reprojected") {
     const ViewedScene view = test::viewBuiltin("builtin:step-edge", {192, 192});
     const GpuScene scene(context(), view.scene);
     for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kTemporal}) {
@@ -71,14 +78,16 @@ TEST_CASE_FIXTURE(Gpu,
         std::array<Eye, 2> eyes{};
         for (int step = 0; step < 6; ++step) {
             Eye eye = view.eye;
-            eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(0.01 * step, glm::dvec3(0, 1, 0));
+            eye.world_from_camera.orientation =
+                eye.world_from_camera.orientation * glm::angleAxis(0.01 * step, glm::dvec3(0, 1, 0));
             eye.world_from_camera.position.x += 0.004 * step;
             eyes = stereoPair(eye, 0.063);
             frame.render(eyes, settings);
         }
         for (const int side : {kLeft, kRight}) {
             CAPTURE(side);
-            const BetweenWalls between = countBetween(*this, frame, eyes[static_cast<std::size_t>(side)], side);
+            const BetweenWalls between =
+                countBetween(*this, frame, eyes[static_cast<std::size_t>(side)], side);
             CAPTURE(between.submitted);
             CHECK(between.mean > 100);
             CHECK(between.submitted * 20 <= between.mean);

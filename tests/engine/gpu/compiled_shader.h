@@ -40,7 +40,8 @@ public:
             const auto stride = strides_.find(id);
             Layout layout{nameOf(id), stride != strides_.end() ? stride->second : 0, {}};
             for (const auto& [member, offset] : offsets) {
-                layout.fields.push_back({member_names_.at(id).at(member), offset, bytesOf(structs_.at(id)[member])});
+                layout.fields.push_back(
+                    {member_names_.at(id).at(member), offset, bytesOf(structs_.at(id)[member])});
             }
             layouts.push_back(std::move(layout));
         }
@@ -48,7 +49,8 @@ public:
     }
     // The struct of the push constants.
     [[nodiscard]] std::string pushStruct() const {
-        const auto push = std::ranges::find_if(structs_, [&](const auto& one) { return nameOf(one.first) == "Push"; });
+        const auto push =
+            std::ranges::find_if(structs_, [&](const auto& one) { return nameOf(one.first) == "Push"; });
         return push != structs_.end() ? nameOf(push->second[0]) : "";
     }
 
@@ -84,16 +86,18 @@ public:
 
     // Addresses that are loaded as if they might not be aligned to eight bytes.
     [[nodiscard]] std::size_t looseAddresses() const {
-        return static_cast<std::size_t>(
-            std::ranges::count_if(loosely_loaded_, [&](std::uint32_t type) { return addresses_.contains(type); }));
+        return static_cast<std::size_t>(std::ranges::count_if(
+            loosely_loaded_, [&](std::uint32_t type) { return addresses_.contains(type); }));
     }
 
 private:
     using Words = std::span<const std::uint32_t>;
-    static constexpr std::uint32_t kName = 5, kMemberName = 6, kExtInst = 12, kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23,
-                                   kTypeArray = 28, kTypeRuntimeArray = 29, kTypeStruct = 30, kTypePointer = 32, kConstant = 43,
-                                   kSpecConstantComposite = 51, kSpecConstantOp = 52, kFunction = 54, kLoad = 61, kStore = 62,
-                                   kDecorate = 71, kMemberDecorate = 72, kVectorShuffle = 79, kCompositeExtract = 81, kCompositeInsert = 82,
+    static constexpr std::uint32_t kName = 5, kMemberName = 6, kExtInst = 12, kTypeInt = 21, kTypeFloat = 22,
+                                   kTypeVector = 23, kTypeArray = 28, kTypeRuntimeArray = 29,
+                                   kTypeStruct = 30, kTypePointer = 32, kConstant = 43,
+                                   kSpecConstantComposite = 51, kSpecConstantOp = 52, kFunction = 54,
+                                   kLoad = 61, kStore = 62, kDecorate = 71, kMemberDecorate = 72,
+                                   kVectorShuffle = 79, kCompositeExtract = 81, kCompositeInsert = 82,
                                    kLoopMerge = 246, kSelectionMerge = 247, kSwitch = 251;
 
     void read(std::uint32_t opcode, Words operands) {
@@ -136,7 +140,9 @@ private:
                 used_.insert(operands[2]);
                 elements_[operands[0]] = operands[1];
                 // An array within a struct; its stride shows that it is laid out.
-                if (array_strides_.contains(operands[0])) { bytes_[operands[0]] = array_strides_[operands[0]] * numbers_[operands[2]]; }
+                if (array_strides_.contains(operands[0])) {
+                    bytes_[operands[0]] = array_strides_[operands[0]] * numbers_[operands[2]];
+                }
                 break;
             case kTypeRuntimeArray:
                 elements_[operands[0]] = operands[1];
@@ -170,12 +176,18 @@ private:
         if (operands.empty()) { return; }
         result_types_.insert(operands[0]);
         // The mask of a load says Aligned, and the number of bytes.
-        if (opcode == kLoad && operands.size() > 4 && (operands[3] & 2) != 0 && operands[4] < 8) { loosely_loaded_.push_back(operands[0]); }
+        if (opcode == kLoad && operands.size() > 4 && (operands[3] & 2) != 0 && operands[4] < 8) {
+            loosely_loaded_.push_back(operands[0]);
+        }
         static const std::map<std::uint32_t, std::pair<std::size_t, std::size_t>> kIds{
-            {kLoad, {0, 3}},   {kCompositeExtract, {0, 3}}, {kVectorShuffle, {0, 4}},  {kCompositeInsert, {0, 4}}, {kStore, {0, 2}},
-            {kSwitch, {0, 1}}, {kLoopMerge, {0, 0}},        {kSelectionMerge, {0, 0}}, {kExtInst, {4, SIZE_MAX}}};
+            {kLoad, {0, 3}},          {kCompositeExtract, {0, 3}},
+            {kVectorShuffle, {0, 4}}, {kCompositeInsert, {0, 4}},
+            {kStore, {0, 2}},         {kSwitch, {0, 1}},
+            {kLoopMerge, {0, 0}},     {kSelectionMerge, {0, 0}},
+            {kExtInst, {4, SIZE_MAX}}};
         const auto ids = kIds.find(opcode);
-        const auto [first, end] = ids != kIds.end() ? ids->second : std::pair(std::size_t{0}, operands.size());
+        const auto [first, end] =
+            ids != kIds.end() ? ids->second : std::pair(std::size_t{0}, operands.size());
         for (std::size_t i = first; i < std::min(end, operands.size()); ++i) { used_.insert(operands[i]); }
     }
 
@@ -186,9 +198,12 @@ private:
 
     [[nodiscard]] bool holdsAddress(std::uint32_t type) const {
         if (addresses_.contains(type)) { return true; }
-        if (const auto array = elements_.find(type); array != elements_.end()) { return holdsAddress(array->second); }
+        if (const auto array = elements_.find(type); array != elements_.end()) {
+            return holdsAddress(array->second);
+        }
         const auto found = structs_.find(type);
-        return found != structs_.end() && std::ranges::any_of(found->second, [&](std::uint32_t member) { return holdsAddress(member); });
+        return found != structs_.end() &&
+               std::ranges::any_of(found->second, [&](std::uint32_t member) { return holdsAddress(member); });
     }
 
     [[nodiscard]] std::size_t bytesOf(std::uint32_t type) const {

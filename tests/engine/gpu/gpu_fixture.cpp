@@ -17,20 +17,25 @@ const Context& Gpu::shared() {
     return context;
 }
 
-Gpu::Gpu() : context_(shared()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
+Gpu::Gpu()
+    : context_(shared()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
 
 Gpu::~Gpu() {
     CHECK(context_.validates() == kValidation);
     const std::vector<std::string> messages = context_.validationMessages();
-    for (std::size_t i = messages_before_; i < messages.size(); ++i) { FAIL_CHECK("validation: " << messages[i]); }
+    for (std::size_t i = messages_before_; i < messages.size(); ++i) {
+        FAIL_CHECK("validation: " << messages[i]);
+    }
 }
 
-const Kernel& Gpu::kernel(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
+const Kernel& Gpu::kernel(const std::string& shader, std::uint32_t push_bytes,
+                          const std::vector<std::uint32_t>& constants) {
     // Made after the device, and destroyed before it.
     static std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> made;
     const auto found = made.find({shader, constants});
     if (found != made.end()) { return found->second; }
-    return made.emplace(std::pair(shader, constants), Kernel(context_, shader, push_bytes, constants)).first->second;
+    return made.emplace(std::pair(shader, constants), Kernel(context_, shader, push_bytes, constants))
+        .first->second;
 }
 
 void Gpu::write(const Buffer& buffer, std::span<const std::byte> bytes) {
@@ -52,13 +57,15 @@ void Gpu::read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t o
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
     constexpr std::uint64_t kMostAtOnce = std::uint64_t{gpu::kSortBlock} * gpu::kMaxSortBlocks;
     const std::uint32_t count = needed <= capacity ? needed : 0;
-    return {needed,
-            count,
-            0,
-            {},
-            dispatchOver(count, gpu::kGroupSize),
-            dispatchOver(count, gpu::kListBlock),
-            dispatchOver(count, gpu::kSortBlock * std::max(1u, static_cast<std::uint32_t>((count + kMostAtOnce - 1) / kMostAtOnce)))};
+    return {
+        needed,
+        count,
+        0,
+        {},
+        dispatchOver(count, gpu::kGroupSize),
+        dispatchOver(count, gpu::kListBlock),
+        dispatchOver(count, gpu::kSortBlock * std::max(1u, static_cast<std::uint32_t>(
+                                                               (count + kMostAtOnce - 1) / kMostAtOnce)))};
 }
 
 }  // namespace binosplat::test

@@ -39,7 +39,8 @@ public:
         return Buffer(context_, name, std::max<std::size_t>(count, 1) * sizeof(T));
     }
     template <typename T>
-    [[nodiscard]] std::vector<T> readBack(const Buffer& buffer, std::size_t count, std::uint64_t offset_bytes = 0) {
+    [[nodiscard]] std::vector<T> readBack(const Buffer& buffer, std::size_t count,
+                                          std::uint64_t offset_bytes = 0) {
         std::vector<T> values(count);
         read(buffer, std::as_writable_bytes(std::span(values)), offset_bytes);
         return values;
@@ -72,6 +73,8 @@ private:
 
 // A list of `needed` items with capacity `capacity`, as shaders/lib/list.glsl makes it.
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity);
-inline gpu::ListState makeList(std::size_t count) { return makeList(static_cast<std::uint32_t>(count), UINT32_MAX); }
+inline gpu::ListState makeList(std::size_t count) {
+    return makeList(static_cast<std::uint32_t>(count), UINT32_MAX);
+}
 
 }  // namespace binosplat::test

@@ -17,7 +17,8 @@ SUITE(layout) {
 #define AGAIN_9(...) AGAIN_3(AGAIN_3(AGAIN_3(__VA_ARGS__)))
 #define AGAIN_3(...) __VA_ARGS__
 #define PARENTHESES ()
-#define FIELDS(name, ...) Field{#name, offsetof(S, name), sizeof(S::name)} __VA_OPT__(, NEXT_FIELDS PARENTHESES(__VA_ARGS__))
+#define FIELDS(name, ...) \
+    Field{#name, offsetof(S, name), sizeof(S::name)} __VA_OPT__(, NEXT_FIELDS PARENTHESES(__VA_ARGS__))
 #define NEXT_FIELDS() FIELDS
 #define LAYOUT(Struct, ...)                                              \
     [] {                                                                 \
@@ -27,68 +28,79 @@ SUITE(layout) {
 
 std::vector<Layout> hostLayouts() {
     return {
-        LAYOUT(SceneChunk, positions, rotations, scales, thicknesses, opacities, base_colours, sh, placement, fade, sh_degree),
+        LAYOUT(SceneChunk, positions, rotations, scales, thicknesses, opacities, base_colours, sh, placement,
+               fade, sh_degree),
         LAYOUT(Placement, x, y, z, position, scale),
         LAYOUT(ScenePage, low, reach, high, count),
-        LAYOUT(EyeView, camera_from_world_x, camera_from_world_y, camera_from_world_z, position, focal_px, principal_px, size_px,
-               size_tiles, near, max_inverse_depth, camera_from_world_x_low, camera_from_world_y_low, camera_from_world_z_low, position_low,
-               focal_px_low, principal_px_low, low_pass, screen_variance),
+        LAYOUT(EyeView, camera_from_world_x, camera_from_world_y, camera_from_world_z, position, focal_px,
+               principal_px, size_px, size_tiles, near, max_inverse_depth, camera_from_world_x_low,
+               camera_from_world_y_low, camera_from_world_z_low, position_low, focal_px_low, principal_px_low,
+               low_pass, screen_variance),
         LAYOUT(Place, position, position_low),
         LAYOUT(ProjectedSplat, reference_px, plane_from_pixel, perspective, inverse_depth, opacity, colour),
         LAYOUT(DispatchSize, x, y, z),
         LAYOUT(ListState, needed, count, groups_done, run_groups_done, per_item, per_block, per_sort_block),
         LAYOUT(PixelMap, excess_x, excess_y, excess_z, shift),
-        LAYOUT(WarpView, target_from_source, source_from_target, size_px, size_tiles, row_words, rows_apart, gap_px, margin_px,
-               edge_samples, tight_edges, move_cost, budget, hole_error, newcomer_error, error_bound),
-        LAYOUT(HistoryView, history_from_now, now_from_history, size_px, size_tiles, history_size_px, history_size_tiles, nearest,
-               background),
+        LAYOUT(WarpView, target_from_source, source_from_target, size_px, size_tiles, row_words, rows_apart,
+               gap_px, margin_px, edge_samples, tight_edges, move_cost, budget, hole_error, newcomer_error,
+               error_bound),
+        LAYOUT(HistoryView, history_from_now, now_from_history, size_px, size_tiles, history_size_px,
+               history_size_tiles, nearest, background),
         LAYOUT(HistoryTile, cost, age, growth, errors, grown, lost, unseen, squared_gradient),
         LAYOUT(ChangedRect, begin_px, end_px, error),
         LAYOUT(HistoryBlock, place, inverse_depths),
         LAYOUT(HistoryBlockList, per_group, count),
         LAYOUT(ComponentPixel, parent, component),
-        LAYOUT(WarpCounters, covered_pixels, gap_pixels, hole_pixels, components, edge_tiles, center_tiles, predicted_tiles, cheap_tiles,
-               newcomers, moved_tiles, picture_cost, shown_tiles, saved_cost, chosen_cost, moves, pays, last_bin, left_for_last,
-               waiting_tiles, left_squares, expected_squares, found_squares, wider_squares, borders_px, per_pixel_block, per_row,
+        LAYOUT(WarpCounters, covered_pixels, gap_pixels, hole_pixels, components, edge_tiles, center_tiles,
+               predicted_tiles, cheap_tiles, newcomers, moved_tiles, picture_cost, shown_tiles, saved_cost,
+               chosen_cost, moves, pays, last_bin, left_for_last, waiting_tiles, left_squares,
+               expected_squares, found_squares, wider_squares, borders_px, per_pixel_block, per_row,
                per_visible, component_groups),
         LAYOUT(EyeGaze, direction, clear_rad, pixel_cycle, focal_px, principal_px),
         LAYOUT(PixelBox, x0, y0, x1, y1),
-        LAYOUT(EyeCounters, pairs, large_splats, full_tiles, coarse_tiles, per_full_tile, coarse_kept, coarse_pairs, sharp_pairs,
-               may_be_coarse, gaze),
-        LAYOUT(TargetState, colours, depths, mesh_depths, moments, moving, arrivals, history_tiles, tile_mask, tile_list, full_tiles,
-               tile_kinds, tile_costs, tile_errors, tile_prices, pairs, counters, warp, warp_counters, history, history_blocks,
-               chosen_tiles, chosen_visible, first_tile, row_words, measured, depth_scale, depth_offset, unused, is_made, area),
-        LAYOUT(CullPagesPass, pages, eyes, page_bits, word_offsets, page_list, visible_pages, page_count, first_eye, eye_count),
-        LAYOUT(CullPass, chunks, eyes, page_list, visible_pages, visible_bits, group_counts, visible, splat_count, chunk_bits, first_eye,
-               eye_count, capacity, at_once, first_tile_mask, last_tile_mask),
-        LAYOUT(CompactPass, chunks, eyes, page_list, visible_pages, visible_bits, group_offsets, visible, keys, splats, splat_count,
-               chunk_bits, order_eye, by_distance, middle),
-        LAYOUT(ProjectPass, chunks, eyes, order, visible, splats, tile_sets, tile_counts, group_sums, pairs, targets, chunk_bits,
-               splats_apart, capacity, is_dimmed),
-        LAYOUT(BinPass, eyes, splats, tile_sets, tile_counts, group_sums, visible, pairs, tiles, ranks, large_splats, large_begins, targets,
-               splats_apart, all_tiles),
+        LAYOUT(EyeCounters, pairs, large_splats, full_tiles, coarse_tiles, per_full_tile, coarse_kept,
+               coarse_pairs, sharp_pairs, may_be_coarse, gaze),
+        LAYOUT(TargetState, colours, depths, mesh_depths, moments, moving, arrivals, history_tiles, tile_mask,
+               tile_list, full_tiles, tile_kinds, tile_costs, tile_errors, tile_prices, pairs, counters, warp,
+               warp_counters, history, history_blocks, chosen_tiles, chosen_visible, first_tile, row_words,
+               measured, depth_scale, depth_offset, unused, is_made, area),
+        LAYOUT(CullPagesPass, pages, eyes, page_bits, word_offsets, page_list, visible_pages, page_count,
+               first_eye, eye_count),
+        LAYOUT(CullPass, chunks, eyes, page_list, visible_pages, visible_bits, group_counts, visible,
+               splat_count, chunk_bits, first_eye, eye_count, capacity, at_once, first_tile_mask,
+               last_tile_mask),
+        LAYOUT(CompactPass, chunks, eyes, page_list, visible_pages, visible_bits, group_offsets, visible,
+               keys, splats, splat_count, chunk_bits, order_eye, by_distance, middle),
+        LAYOUT(ProjectPass, chunks, eyes, order, visible, splats, tile_sets, tile_counts, group_sums, pairs,
+               targets, chunk_bits, splats_apart, capacity, is_dimmed),
+        LAYOUT(BinPass, eyes, splats, tile_sets, tile_counts, group_sums, visible, pairs, tiles, ranks,
+               large_splats, large_begins, targets, splats_apart, all_tiles),
         LAYOUT(TileRangesPass, eyes, tiles, pairs, ranges, visible, targets, background),
         LAYOUT(RasterizePass, eyes, splats, ranks, ranges, targets, background, depth_choice, is_light),
         LAYOUT(ContributePass, eyes, splats, ranks, ranges, order, picture, wanted, sums, eye),
-        LAYOUT(WeighPass, warp, ranges, moving, tile_kinds, tile_costs, tile_errors, tile_depths, tile_mask, price_bins, shown_mask,
-               visible, masked_tiles, counters, kinds_given),
+        LAYOUT(WeighPass, warp, ranges, moving, tile_kinds, tile_costs, tile_errors, tile_depths, tile_mask,
+               price_bins, shown_mask, visible, masked_tiles, counters, kinds_given),
         LAYOUT(DepthBoundsPass, warp, colours, half_colours, moving, bins),
         LAYOUT(EdgeRoisPass, warp, bins, tile_kinds, shown_mask, counters),
         LAYOUT(ReprojectPass, warp, moving, arrivals, shown_mask),
-        LAYOUT(WarpHistoryPass, view, source, source_words, source_tiles, target, target_words, tiles, tile_kinds, tile_mask, price_bins,
-               shown_mask, history_shown, blocks, block_list),
-        LAYOUT(NewcomersPass, chunks, eyes, warp, tile_depths, order, visible, source_counts, tile_kinds, tile_errors, counters, chunk_bits,
-               eye, is_dimmed),
-        LAYOUT(ResamplePass, warp, source, half_source, moving, target, half_target, depths, tile_kinds, tile_errors, pixel_classes,
-               counters, shown_mask, background, first_row, copies_colours, groups_holes),
-        LAYOUT(ComponentsPass, warp, pixels, pixel_classes, boxes, tile_kinds, counters, box_capacity, slots_apart),
+        LAYOUT(WarpHistoryPass, view, source, source_words, source_tiles, target, target_words, tiles,
+               tile_kinds, tile_mask, price_bins, shown_mask, history_shown, blocks, block_list),
+        LAYOUT(NewcomersPass, chunks, eyes, warp, tile_depths, order, visible, source_counts, tile_kinds,
+               tile_errors, counters, chunk_bits, eye, is_dimmed),
+        LAYOUT(ResamplePass, warp, source, half_source, moving, target, half_target, depths, tile_kinds,
+               tile_errors, pixel_classes, counters, shown_mask, background, first_row, copies_colours,
+               groups_holes),
+        LAYOUT(ComponentsPass, warp, pixels, pixel_classes, boxes, tile_kinds, counters, box_capacity,
+               slots_apart),
         LAYOUT(MarkChangedPass, tiles, rects, size_tiles, count),
         LAYOUT(PricePass, targets, chosen, price_bins, most_cost),
         LAYOUT(SelectPass, targets, chosen, visible, at_once),
         LAYOUT(SortCountPass, keys, histograms, run_sums, digit_begins, list, shift, digits),
-        LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
-        LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, mesh_depths, size_px,
-               depth_scale, depth_offset, blue_first, linear, see_through, over, is_cut, kept_bits),
+        LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins,
+               list, shift, digits),
+        LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels,
+               device_depths, mesh_depths, size_px, depth_scale, depth_offset, blue_first, linear,
+               see_through, over, is_cut, kept_bits),
         LAYOUT(TurnPass, pixels, shown, column_x, column_y, column_z, picture_px, view_px, linear),
     };
 }
@@ -96,13 +108,19 @@ std::vector<Layout> hostLayouts() {
 // What is wrong with a shader's struct, or "". The language's own blocks have no twin in C++: the push
 // constants, the arrays behind an address, and sixteen bytes of anything (lib/history.glsl).
 std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) {
-    if (shader.name == "Push" || shader.name == "Sixteen" || (shader.fields.size() == 1 && shader.fields[0].name == "at")) { return {}; }
-    const auto twin = std::find_if(host.begin(), host.end(), [&](const Layout& layout) { return layout.name == shader.name; });
+    if (shader.name == "Push" || shader.name == "Sixteen" ||
+        (shader.fields.size() == 1 && shader.fields[0].name == "at")) {
+        return {};
+    }
+    const auto twin = std::find_if(host.begin(), host.end(),
+                                   [&](const Layout& layout) { return layout.name == shader.name; });
     if (twin == host.end()) { return shader.name + " is missing in the table of this test"; }
     if (shader.bytes != 0 && shader.bytes != twin->bytes) { return shader.name + " has another size"; }
     if (shader.fields.size() != twin->fields.size()) { return shader.name + " has another number of fields"; }
     for (std::size_t i = 0; i < shader.fields.size(); ++i) {
-        if (shader.fields[i] != twin->fields[i]) { return shader.name + "." + shader.fields[i].name + " differs"; }
+        if (shader.fields[i] != twin->fields[i]) {
+            return shader.name + "." + shader.fields[i].name + " differs";
+        }
     }
     return {};
 }
@@ -129,8 +147,11 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     const std::map<std::string, ListedPass> listed = listedPasses();
     std::set<std::string> seen;
     const fs::recursive_directory_iterator shaders(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders");
-    const auto isShader = [](const fs::directory_entry& entry) { return entry.path().extension() == ".comp"; };
-    CHECK(std::count_if(begin(shaders), end(shaders), isShader) == static_cast<std::ptrdiff_t>(listed.size()));
+    const auto isShader = [](const fs::directory_entry& entry) {
+        return entry.path().extension() == ".comp";
+    };
+    CHECK(std::count_if(begin(shaders), end(shaders), isShader) ==
+          static_cast<std::ptrdiff_t>(listed.size()));
     for (const auto& [name, pass] : listed) {
         CAPTURE(name);
         const auto words = embeddedShader(name);
@@ -150,7 +171,9 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
     KernelTable table = PassKernels(context()).table();
     append(table, presentKernels());
     CHECK(table.size() <= 198);  // each takes seconds in a driver's compiler, so the number may only fall
@@ -175,11 +198,15 @@ TEST_CASE_FIXTURE(Gpu, "every kernel has full subgroups where its width and the 
     CHECK(context().fullSubgroups(lanes + 1) == vk::PipelineShaderStageCreateFlags());
     // The group's width is a literal, a constant, or a constant other than the first.
     CHECK(Kernel(context(), variantOf(BinKernel{})).subgroups() == context().fullSubgroups(gpu::kGroupSize));
-    CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 4 * lanes})).subgroups() == context().fullSubgroups(lanes));
-    CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 3 * lanes / 2})).subgroups() == context().fullSubgroups(lanes + 1));
+    CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 4 * lanes})).subgroups() ==
+          context().fullSubgroups(lanes));
+    CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 3 * lanes / 2})).subgroups() ==
+          context().fullSubgroups(lanes + 1));
 }
 
-TEST_CASE("no shader copies a struct of addresses, which some compilers do not survive, nor loads an address as if it lay anywhere") {
+TEST_CASE(
+    "no shader copies a struct of addresses, which some compilers do not survive, nor loads an address as if "
+    "it lay anywhere") {
     for (const auto& [name, pass] : listedPasses()) {
         CAPTURE(name);
         const CompiledShader shader(embeddedShader(name));
@@ -191,7 +218,8 @@ TEST_CASE_FIXTURE(Gpu, "a shader that breaks off is refused, whatever the driver
     const auto words = embeddedShader("bin");
     const std::vector<std::uint32_t> whole(words.begin(), words.end());
     for (const std::size_t length : {std::size_t{3}, std::size_t{6}}) {
-        context().replacedShaders()["bin"] = {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)};
+        context().replacedShaders()["bin"] = {whole.begin(),
+                                              whole.begin() + static_cast<std::ptrdiff_t>(length)};
         CHECK_THROWS_AS(Kernel(context(), variantOf(BinKernel{})), Error);
     }
     context().replacedShaders()["bin"] = whole;

@@ -13,7 +13,9 @@ vk::PhysicalDeviceProperties someDevice() {
     vk::PhysicalDeviceProperties device;
     device.vendorID = 0x1234;
     device.deviceID = 7;
-    for (std::size_t i = 0; i < VK_UUID_SIZE; ++i) { device.pipelineCacheUUID[i] = static_cast<std::uint8_t>(i + 1); }
+    for (std::size_t i = 0; i < VK_UUID_SIZE; ++i) {
+        device.pipelineCacheUUID[i] = static_cast<std::uint8_t>(i + 1);
+    }
     return device;
 }
 
@@ -32,7 +34,8 @@ Bytes someData(const vk::PhysicalDeviceProperties& device) {
 
 // An environment variable for the lifetime of this object.
 struct Environment {
-    Environment(const char* variable, const std::string& value) : name(variable), before(environment(variable)) {
+    Environment(const char* variable, const std::string& value)
+        : name(variable), before(environment(variable)) {
         setEnvironment(name, value);
     }
     Environment(const Environment&) = delete;
@@ -46,8 +49,11 @@ TEST_CASE("what is kept comes back; a file that is cut off, changed or another d
     const auto device = someDevice();
     const Bytes file = sealPipelineCache(someData(device));
     CHECK(unsealPipelineCache(file, device) == someData(device));
-    for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, std::size_t{31}, std::size_t{40}, file.size() - 1}) {
-        CHECK(unsealPipelineCache(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(bytes)), device).empty());
+    for (const std::size_t bytes :
+         {std::size_t{0}, std::size_t{1}, std::size_t{31}, std::size_t{40}, file.size() - 1}) {
+        CHECK(unsealPipelineCache(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(bytes)),
+                                  device)
+                  .empty());
     }
     for (const std::size_t at : {std::size_t{0}, std::size_t{500}, file.size() - 1}) {
         Bytes changed = file;
@@ -64,7 +70,8 @@ TEST_CASE("what is kept comes back; a file that is cut off, changed or another d
 
 TEST_CASE("it is kept in the user's cache folder, or where the environment says") {
     const Environment home("HOME", "/home/somebody"), cache("XDG_CACHE_HOME", "");
-    for (const auto& [chosen, folder] : {std::pair("", "/home/somebody/.cache/binosplat"), {"/tmp/mine", "/tmp/mine"}, {"0", ""}}) {
+    for (const auto& [chosen, folder] :
+         {std::pair("", "/home/somebody/.cache/binosplat"), {"/tmp/mine", "/tmp/mine"}, {"0", ""}}) {
         const Environment choice("BINOSPLAT_PIPELINE_CACHE", chosen);
         CHECK(pipelineCacheFolder() == folder);
     }
@@ -90,7 +97,9 @@ TEST_CASE_FIXTURE(AtWork, "a folder that cannot be written, a file of rubbish an
         CHECK(context.validationMessages().empty());
     }
     for (const auto& entry : fs::directory_iterator(pipe_folder)) { CHECK(entry.is_fifo()); }
-    for (const auto& entry : fs::directory_iterator(folder)) { CHECK(entry.path().extension() == ".pipelines"); }
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        CHECK(entry.path().extension() == ".pipelines");
+    }
 }
 
 }  // SUITE(pipeline_cache)

@@ -26,12 +26,15 @@ Scene widenSome(const Scene& scene, std::size_t count) {
     some.resize(count);
     Scene wider = pickSplats(scene, some);
     for (glm::vec2& scale : wider.scales) {
-        scale *= static_cast<float>(std::sqrt(static_cast<double>(scene.size()) / static_cast<double>(count)));
+        scale *=
+            static_cast<float>(std::sqrt(static_cast<double>(scene.size()) / static_cast<double>(count)));
     }
     return wider;
 }
 
-TEST_CASE_FIXTURE(Gpu, "a scene thinned out by what it shows is 5 dB nearer to the whole than a random one, and always the same") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a scene thinned out by what it shows is 5 dB nearer to the whole than a random one, and "
+                  "always the same") {
     const Scene scene = makeBuiltin("builtin:atelier", 12000);
     const std::size_t kept = scene.size() / 2;
     const double near = usualNear(scene);
@@ -39,9 +42,11 @@ TEST_CASE_FIXTURE(Gpu, "a scene thinned out by what it shows is 5 dB nearer to t
     const Scene thin = thin_out.keep(kept);
     REQUIRE(thin.size() == kept);
     const Scene again = thin_out.keep(kept);
-    CHECK(these(again.positions, again.scales, again.opacities, again.sh) == these(thin.positions, thin.scales, thin.opacities, thin.sh));
+    CHECK(these(again.positions, again.scales, again.opacities, again.sh) ==
+          these(thin.positions, thin.scales, thin.opacities, thin.sh));
     ThinOut elsewhere(context(), scene, standingEyes(scene, 6, 30, 96), near);
-    const double of_thin = decibels(elsewhere.errorOf(thin)), of_random = decibels(elsewhere.errorOf(widenSome(scene, kept)));
+    const double of_thin = decibels(elsewhere.errorOf(thin)),
+                 of_random = decibels(elsewhere.errorOf(widenSome(scene, kept)));
     MESSAGE(of_thin << " dB, random and wider " << of_random << " dB");
     CHECK(of_thin >= of_random + 5.0);
 }
@@ -62,10 +67,13 @@ TEST_CASE_FIXTURE(Gpu, "what each splat is off by adds up to what the pictures a
     CHECK(nothing == 0.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "a scene of several blocks gets as many levels as one of a single block, the same bytes every time") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "a scene of several blocks gets as many levels as one of a single block, the same bytes every time") {
     const Scene scene = makeBuiltin("builtin:atelier", 3000);
     const TemporaryFolder folder("binosplat-levels", "for a test");
-    LevelSettings settings{.levels = 4, .eyes = standingEyes(scene, 12, 0, 48), .near = usualNear(scene), .block_splats = 1000};
+    LevelSettings settings{
+        .levels = 4, .eyes = standingEyes(scene, 12, 0, 48), .near = usualNear(scene), .block_splats = 1000};
     settings.block_eyes = 2, settings.block_side_px = 64, settings.block_steps = 2;
     const auto write = [&](const std::string& name, const Progress& progress = {}) {
         StreamedWriter writer((folder.path() / name / "lod-meta.json").string(), {.leaf_splats = 300});
@@ -98,7 +106,8 @@ TEST_CASE_FIXTURE(Gpu, "a scene of several blocks gets as many levels as one of 
 }
 
 // Takes minutes, so only the nightly tests run it.
-TEST_CASE_FIXTURE(Gpu, "half of playbot's splats show it from elsewhere within 33.5 dB, a fifth within 27.5" * test::needsSharedData()) {
+TEST_CASE_FIXTURE(Gpu, "half of playbot's splats show it from elsewhere within 33.5 dB, a fifth within 27.5" *
+                           test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     const Scene scene = loadScene((*data / "playbot/playbot_lod2_2dgs_sh2.ply").string());
@@ -115,10 +124,12 @@ TEST_CASE_FIXTURE(Gpu, "half of playbot's splats show it from elsewhere within 3
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "half of each shared scene's splats are 5 dB nearer to it than a random half" * test::needsSharedData()) {
+TEST_CASE_FIXTURE(Gpu, "half of each shared scene's splats are 5 dB nearer to it than a random half" *
+                           test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
-    for (const char* name : {"statues/angel.sog", "guitar/guitar.compressed.ply", "playbot/playbot_lod3_2dgs_sh2.ply"}) {
+    for (const char* name :
+         {"statues/angel.sog", "guitar/guitar.compressed.ply", "playbot/playbot_lod3_2dgs_sh2.ply"}) {
         const Scene scene = loadScene((*data / name).string());
         ThinOut thin_out(context(), scene, standingEyes(scene, 24, 0, 128), usualNear(scene));
         ThinOut elsewhere(context(), scene, standingEyes(scene, 8, 30, 128), usualNear(scene));

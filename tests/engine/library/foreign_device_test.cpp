@@ -12,7 +12,8 @@ constexpr float kNear = 0.2f;
 // One eye in front of a scene's splats, whose picture is drawn over what the program drew.
 struct Asked {
     Asked(const ForeignProgram& program, const bsp::Scene& scene)
-        : properties(scene.properties()), view(bsp::lookAt(properties.eye, properties.look, properties.up, 0.0, 1.2, kSize.x, kSize.y)[0]) {
+        : properties(scene.properties()),
+          view(bsp::lookAt(properties.eye, properties.look, properties.up, 0.0, 1.2, kSize.x, kSize.y)[0]) {
         target.colour = *program.colour->image;
         target.colour_format = static_cast<VkFormat>(program.colour->format);
         target.colour_before = target.colour_after = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
@@ -41,7 +42,8 @@ bsp::Scene load(const bsp::Device& device, const std::string& source) {
 }
 
 // Records the frame between the program's own draws; returns its result once the device is done.
-bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& renderer, const Asked& asked, float wall_depth) {
+bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& renderer, const Asked& asked,
+                             float wall_depth) {
     const vk::raii::CommandBuffer commands = program.begin();
     program.drawWall(commands, wall_depth);
     std::uint64_t number = 0;
@@ -55,7 +57,9 @@ bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& rende
     return result;
 }
 
-TEST_CASE("by pixel, splats lie before and behind a wall that the program drew, over its picture, and its own draws go on after them") {
+TEST_CASE(
+    "by pixel, splats lie before and behind a wall that the program drew, over its picture, and its own "
+    "draws go on after them") {
     ForeignProgram program;
     const bsp::Device device = program.open();
     const bsp::Scene scene = load(device, "builtin:atelier");
@@ -65,7 +69,8 @@ TEST_CASE("by pixel, splats lie before and behind a wall that the program drew, 
     bsp::check(bsp_prepare(renderer.get(), &asked.frame));
     // What must be visible, according to the picture and its depths.
     renderer.render(asked.frame);
-    const std::vector<float> picture = renderer.colour(asked.view, 0).values, depths = renderer.depth(asked.view, 0).values;
+    const std::vector<float> picture = renderer.colour(asked.view, 0).values,
+                             depths = renderer.depth(asked.view, 0).values;
     std::vector<float> middle;
     std::ranges::copy_if(depths, std::back_inserter(middle), [](float depth) { return depth > 0.0f; });
     std::ranges::nth_element(middle, middle.begin() + static_cast<std::ptrdiff_t>(middle.size() / 2));
@@ -83,10 +88,12 @@ TEST_CASE("by pixel, splats lie before and behind a wall that the program drew, 
         const float* splats = &picture[4 * i];
         const bool is_hidden = !(depths[i] > 0.0f) || (is_wall && depths[i] > wall_z);
         (is_hidden ? behind : before) += is_wall ? 1 : 0;
-        const std::array<float, 3> own = is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
+        const std::array<float, 3> own =
+            is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
         const float share = is_hidden ? 0.0f : splats[3];
         for (std::size_t c = 0; c < 3; ++c) {
-            float value = std::clamp((is_hidden ? 0.0f : std::clamp(splats[c], 0.0f, 1.0f)) + (1.0f - share) * own[c], 0.0f, 1.0f);
+            float value = std::clamp(
+                (is_hidden ? 0.0f : std::clamp(splats[c], 0.0f, 1.0f)) + (1.0f - share) * own[c], 0.0f, 1.0f);
             if (x < 4 && y < 4) { value = 1.0f; }
             off += std::abs(static_cast<float>(seen[i] >> (8 * c) & 255) - 255.0f * value) > 1.01f ? 1 : 0;
         }
@@ -106,7 +113,8 @@ bsp::Scene loadLayers(const bsp::Device& device, float end) {
     std::uniform_real_distribution<float> aside(-1.0f, 1.0f);
     for (int i = 0; i < 600; ++i) {
         const float z = 1.0f + 0.01f * static_cast<float>(i);
-        const std::array<float, 3> position{z * aside(random), z * aside(random), z}, colour{aside(random), aside(random), aside(random)};
+        const std::array<float, 3> position{z * aside(random), z * aside(random), z},
+            colour{aside(random), aside(random), aside(random)};
         if (z >= end) { break; }
         positions.push_back(position);
         colours.push_back(colour);
@@ -154,10 +162,13 @@ TEST_CASE("a wall through a cloud hides at every pixel the splats behind it and 
         const std::size_t x = i % kSize.x, y = i / kSize.x;
         if (x < 4 && y < 4) { continue; }  // the white square
         const bool is_wall = x < kSize.x / 2;
-        const float *splats = is_wall ? &of_nearer[4 * i] : &of_all[4 * i], z = is_wall ? nearer_depths[i] : all_depths[i];
-        const std::array<float, 3> own = is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
+        const float *splats = is_wall ? &of_nearer[4 * i] : &of_all[4 * i],
+                    z = is_wall ? nearer_depths[i] : all_depths[i];
+        const std::array<float, 3> own =
+            is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
         for (std::size_t c = 0; c < 3; ++c) {
-            const float value = std::clamp(std::clamp(splats[c], 0.0f, 1.0f) + (1.0f - splats[3]) * own[c], 0.0f, 1.0f);
+            const float value =
+                std::clamp(std::clamp(splats[c], 0.0f, 1.0f) + (1.0f - splats[3]) * own[c], 0.0f, 1.0f);
             off += std::abs(static_cast<float>(seen[i] >> (8 * c) & 255) - 255.0f * value) > 1.01f ? 1 : 0;
         }
         const float depth = splats[3] >= 0.5f ? kNear / z : is_wall ? kNear / kWall : 0.0f;
@@ -169,7 +180,9 @@ TEST_CASE("a wall through a cloud hides at every pixel the splats behind it and 
     CHECK(differ > 100);  // pixels of the wall with splats in front of it and behind it
 }
 
-TEST_CASE("an image of floats gets the picture to the last bit, recorded or submitted with semaphores, also where another renderer draws") {
+TEST_CASE(
+    "an image of floats gets the picture to the last bit, recorded or submitted with semaphores, also where "
+    "another renderer draws") {
     ForeignProgram program;
     const bsp::Device device = program.open();
     const bsp::Scene scene = load(device, "builtin:fence");
@@ -198,13 +211,15 @@ TEST_CASE("an image of floats gets the picture to the last bit, recorded or subm
     CHECK(program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4) == expected);
 }
 
-TEST_CASE("a frame that is discarded takes nothing along: what moved before it is where it should be in the next") {
+TEST_CASE(
+    "a frame that is discarded takes nothing along: what moved before it is where it should be in the next") {
     ForeignProgram program;
     const bsp::Device device = program.open();
     const bsp::Scene scene = load(device, "builtin:fence"), other = load(device, "builtin:one-splat");
     bsp::Renderer renderer(device), exact(device);
     Asked asked(program, scene);
-    std::array instances{bsp::make<bsp_instance>(BSP_TYPE_INSTANCE), bsp::make<bsp_instance>(BSP_TYPE_INSTANCE)};
+    std::array instances{bsp::make<bsp_instance>(BSP_TYPE_INSTANCE),
+                         bsp::make<bsp_instance>(BSP_TYPE_INSTANCE)};
     instances[0].scene = scene.get();
     instances[1].scene = other.get();
     asked.frame.scene = nullptr;
@@ -231,10 +246,13 @@ TEST_CASE("a frame that is discarded takes nothing along: what moved before it i
     program.submit(commands, fence);
     (void)program.device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
     bsp::check(bsp_collect(renderer.get(), number, nullptr));
-    CHECK(program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4) == exact.colour(asked.view, 0).values);
+    CHECK(program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4) ==
+          exact.colour(asked.view, 0).values);
 }
 
-TEST_CASE("two of the library's devices on one device of the program draw into one command buffer, each what it would draw alone") {
+TEST_CASE(
+    "two of the library's devices on one device of the program draw into one command buffer, each what it "
+    "would draw alone") {
     ForeignProgram program;
     const bsp::Device first = program.open(), second = program.open();
     const bsp::Scene of_first = load(first, "builtin:one-splat"), of_second = load(second, "builtin:fence");
@@ -262,7 +280,8 @@ TEST_CASE("two of the library's devices on one device of the program draw into o
         if (of_other) { bsp::check(bsp_collect(other.get(), numbers[1], nullptr)); }
         return program.readWords(*program.colour, kColourUse);
     };
-    const std::vector<std::uint32_t> none = draw(false, false), one = draw(true, false), two = draw(false, true), both = draw(true, true);
+    const std::vector<std::uint32_t> none = draw(false, false), one = draw(true, false),
+                                     two = draw(false, true), both = draw(true, true);
     CHECK(one != none);
     CHECK(two != none);
     CHECK(one != two);
@@ -275,7 +294,9 @@ TEST_CASE("two of the library's devices on one device of the program draw into o
     CHECK(unlike == 0);
 }
 
-TEST_CASE("two frames are under way while the head moves, scenes come and go and lists grow, and nothing waits or is said by the layers") {
+TEST_CASE(
+    "two frames are under way while the head moves, scenes come and go and lists grow, and nothing waits or "
+    "is said by the layers") {
     ForeignProgram program;
     const bsp::Device device = program.open();
     const bsp::Scene small = load(device, "builtin:one-splat");
@@ -307,7 +328,8 @@ TEST_CASE("two frames are under way while the head moves, scenes come and go and
         if (i == 95) { large.reset(); }
         for (bsp_view& view : views) { view.position[0] += 0.002; }
         if (flights.size() == 2) { land(); }
-        Flight& flight = flights.emplace_back(Flight{program.begin(), {program.device, vk::FenceCreateInfo()}, 0});
+        Flight& flight =
+            flights.emplace_back(Flight{program.begin(), {program.device, vk::FenceCreateInfo()}, 0});
         program.drawWall(flight.commands, 0.05f);
         bsp::check(bsp_record(renderer.get(), &asked.frame, *flight.commands, &flight.number));
         program.drawSign(flight.commands);
@@ -331,7 +353,8 @@ TEST_CASE("a device without what is needed is refused by its name, and so is a t
             FAIL_CHECK("it was opened");
         } catch (const bsp::Error& error) {
             CHECK(error.code() == BSP_ERROR_NO_DEVICE);
-            CHECK(std::string(error.what()).find("bufferDeviceAddress and scalarBlockLayout") != std::string::npos);
+            CHECK(std::string(error.what()).find("bufferDeviceAddress and scalarBlockLayout") !=
+                  std::string::npos);
         }
     }
     ForeignProgram program;
@@ -348,7 +371,8 @@ TEST_CASE("a device without what is needed is refused by its name, and so is a t
     };
     refused([](Asked& asked) { asked.view.next = nullptr; }, "view 0 has no bsp_target");
     refused([](Asked& asked) { asked.frame.background[0] = 1.0; }, "background");
-    refused([](Asked& asked) { asked.target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT; }, "R32G32B32A32Sfloat, to be blended over");
+    refused([](Asked& asked) { asked.target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT; },
+            "R32G32B32A32Sfloat, to be blended over");
     refused([](Asked& asked) { asked.target.depth_scale = 0.0f; }, "depth_scale");
     refused([](Asked& asked) { asked.target.colour_after = VK_IMAGE_LAYOUT_UNDEFINED; }, "UNDEFINED");
 }

@@ -11,8 +11,8 @@ namespace binosplat::test {
 
 class ForeignImage {
 public:
-    ForeignImage(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, vk::Format format, glm::uvec2 size_px,
-                 vk::ImageUsageFlags usage, vk::ImageAspectFlagBits aspect);
+    ForeignImage(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, vk::Format format,
+                 glm::uvec2 size_px, vk::ImageUsageFlags usage, vk::ImageAspectFlagBits aspect);
 
     vk::Format format;
     vk::raii::Image image;
@@ -35,8 +35,10 @@ public:
     // Draws a white square in the corner, over the existing picture.
     void drawSign(const vk::raii::CommandBuffer& commands) const;
     // The bytes of an image that is in this layout; waits for the device.
-    [[nodiscard]] std::vector<float> readFloats(const ForeignImage& image, vk::ImageLayout layout, std::uint32_t floats_per_pixel) const;
-    [[nodiscard]] std::vector<std::uint32_t> readWords(const ForeignImage& image, vk::ImageLayout layout) const;
+    [[nodiscard]] std::vector<float> readFloats(const ForeignImage& image, vk::ImageLayout layout,
+                                                std::uint32_t floats_per_pixel) const;
+    [[nodiscard]] std::vector<std::uint32_t> readWords(const ForeignImage& image,
+                                                       vk::ImageLayout layout) const;
     [[nodiscard]] vk::raii::CommandBuffer begin() const;
     void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) const;
 
@@ -54,7 +56,8 @@ public:
 
 private:
     void makePasses();
-    [[nodiscard]] std::vector<std::byte> read(const ForeignImage& image, vk::ImageLayout layout, std::uint64_t bytes) const;
+    [[nodiscard]] std::vector<std::byte> read(const ForeignImage& image, vk::ImageLayout layout,
+                                              std::uint64_t bytes) const;
 
     vk::PhysicalDeviceVulkan12Features features_;
     vk::raii::RenderPass wall_{nullptr}, sign_{nullptr};

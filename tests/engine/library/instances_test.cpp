@@ -18,7 +18,9 @@ struct Opened : Workplace {
     Opened() {
         auto info = bsp::make<bsp_device_info>(BSP_TYPE_DEVICE_INFO);
         info.validation = BINOSPLAT_TEST_VALIDATION ? 1 : 0;
-        info.log = [](void* user, const char* line) { static_cast<std::vector<std::string>*>(user)->emplace_back(line); };
+        info.log = [](void* user, const char* line) {
+            static_cast<std::vector<std::string>*>(user)->emplace_back(line);
+        };
         info.log_user = &lines;
         device.emplace(info);
         renderer.emplace(*device);
@@ -26,7 +28,9 @@ struct Opened : Workplace {
     ~Opened() {
         renderer.reset();
         device.reset();
-        std::erase_if(lines, [](const std::string& line) { return line.find("Vulkan validation") == std::string::npos; });
+        std::erase_if(lines, [](const std::string& line) {
+            return line.find("Vulkan validation") == std::string::npos;
+        });
         CHECK(lines == std::vector<std::string>());
     }
     [[nodiscard]] bsp::Scene load(const std::string& source, std::uint32_t live = 0) const {
@@ -129,11 +133,14 @@ Scene colourful(std::size_t splats, std::uint32_t seed, int sh_degree, bool gaus
     std::uniform_real_distribution<float> spread(-1.0f, 1.0f);
     for (std::size_t i = 0; i < splats; ++i) {
         scene.positions.emplace_back(spread(random), spread(random), spread(random));
-        scene.rotations.push_back(glm::normalize(glm::quat(spread(random), spread(random), spread(random), spread(random))));
+        scene.rotations.push_back(
+            glm::normalize(glm::quat(spread(random), spread(random), spread(random), spread(random))));
         scene.scales.emplace_back(0.05f + 0.04f * spread(random), 0.05f + 0.04f * spread(random));
         if (gaussians) { scene.thicknesses.push_back(0.009f + 0.001f * spread(random)); }
         scene.opacities.push_back(0.5f + 0.4f * spread(random));
-        for (int k = 0; k < 3 * shCoefficientCount(sh_degree); ++k) { scene.sh.push_back(0.3f * spread(random)); }
+        for (int k = 0; k < 3 * shCoefficientCount(sh_degree); ++k) {
+            scene.sh.push_back(0.3f * spread(random));
+        }
     }
     return scene;
 }
@@ -144,7 +151,8 @@ bsp::Views viewsAt(double aside = 0.0) {
     return bsp::lookAt(eye, kLook, kUp, 0.063, 1.0, 112, 80);
 }
 
-TEST_CASE_FIXTURE(Opened, "an instance that is placed where its file has it is the scene to the last bit, in every mode") {
+TEST_CASE_FIXTURE(
+    Opened, "an instance that is placed where its file has it is the scene to the last bit, in every mode") {
     const bsp::Scene room = load(makeBuiltin("builtin:atelier", 3000));
     const bsp::Views views = room.startViews(0.063, 1.2, 96, 64);
     for (const bsp_mode mode : {BSP_MODE_TWO_PASS, BSP_MODE_SHARED, BSP_MODE_PAPER, BSP_MODE_PREDICTED}) {
@@ -153,13 +161,17 @@ TEST_CASE_FIXTURE(Opened, "an instance that is placed where its file has it is t
     }
 }
 
-TEST_CASE_FIXTURE(Opened, "instances of discs and of Gaussians are what their splats turned, moved and scaled by hand make") {
+TEST_CASE_FIXTURE(
+    Opened,
+    "instances of discs and of Gaussians are what their splats turned, moved and scaled by hand make") {
     const Similarity left{glm::normalize(glm::dquat(0.8, 0.3, -0.4, 0.2)), {-1.1, 0.2, 0.3}, 0.7},
-        right{{1, 0, 0, 0}, {1.0, -0.1, 0.5}, 1.0}, far{glm::normalize(glm::dquat(0.1, -0.5, 0.6, 0.9)), {0.2, 0.3, 3.0}, 2.0};
+        right{{1, 0, 0, 0}, {1.0, -0.1, 0.5}, 1.0},
+        far{glm::normalize(glm::dquat(0.1, -0.5, 0.6, 0.9)), {0.2, 0.3, 3.0}, 2.0};
     for (const bool gaussians : {false, true}) {
         const Scene three_bands = colourful(900, 1, 3, gaussians), one_band = colourful(700, 2, 1, gaussians);
         Scene by_hand = placeByHand(three_bands, left), second = one_band;
-        const std::size_t missing = 3 * static_cast<std::size_t>(shCoefficientCount(3) - shCoefficientCount(1));
+        const std::size_t missing =
+            3 * static_cast<std::size_t>(shCoefficientCount(3) - shCoefficientCount(1));
         Scene widened = second;
         widened.sh.clear();
         widened.sh_degree = 3;
@@ -170,7 +182,8 @@ TEST_CASE_FIXTURE(Opened, "instances of discs and of Gaussians are what their sp
         appendTo(by_hand, placeByHand(widened, right));
         appendTo(by_hand, placeByHand(three_bands, far));
         const bsp::Scene first = load(three_bands), other = load(one_band), all = load(by_hand);
-        const std::vector<bsp_instance> instances{instanceOf(first, left), instanceOf(other, right), instanceOf(first, far)};
+        const std::vector<bsp_instance> instances{instanceOf(first, left), instanceOf(other, right),
+                                                  instanceOf(first, far)};
         for (const bsp_mode mode : {BSP_MODE_SHARED, BSP_MODE_PREDICTED}) {
             const std::vector<float> expected = draw(*renderer, frameOf(mode, all.get()), viewsAt(), {}),
                                      seen = draw(*renderer, frameOf(mode), viewsAt(), instances);
@@ -182,12 +195,15 @@ TEST_CASE_FIXTURE(Opened, "instances of discs and of Gaussians are what their sp
 }
 
 TEST_CASE_FIXTURE(Opened,
-                  "a hidden instance is not there, one that moves leaves nothing behind in temporal, and another's coming is a cut") {
+                  "a hidden instance is not there, one that moves leaves nothing behind in temporal, and "
+                  "another's coming is a cut") {
     const bsp::Scene one = load(colourful(800, 3, 2, false)), other = load(colourful(500, 4, 0, false));
-    std::vector<bsp_instance> both{instanceOf(one, {{1, 0, 0, 0}, {-0.9, 0, 0}, 0.8}), instanceOf(other, {{1, 0, 0, 0}, {1, 0, 0}, 0.6})};
+    std::vector<bsp_instance> both{instanceOf(one, {{1, 0, 0, 0}, {-0.9, 0, 0}, 0.8}),
+                                   instanceOf(other, {{1, 0, 0, 0}, {1, 0, 0}, 0.6})};
     const std::vector<bsp_instance> first{both[0]};
     both[1].hidden = 1;
-    CHECK(draw(*renderer, frameOf(BSP_MODE_SHARED), viewsAt(), both) == draw(*renderer, frameOf(BSP_MODE_SHARED), viewsAt(), first));
+    CHECK(draw(*renderer, frameOf(BSP_MODE_SHARED), viewsAt(), both) ==
+          draw(*renderer, frameOf(BSP_MODE_SHARED), viewsAt(), first));
     both[1].hidden = 0;
     bsp::Renderer exact(*device);
     double worst = 0.0, without = 0.0;
@@ -203,12 +219,16 @@ TEST_CASE_FIXTURE(Opened,
     CHECK(worst < 0.03);  // 30 dB
     CHECK(without > 0.1);
     both.push_back(instanceOf(other, {{1, 0, 0, 0}, {0, 0, 2}, 1.0}));
-    CHECK(draw(*renderer, frameOf(BSP_MODE_TEMPORAL), viewsAt(), both) == draw(exact, frameOf(BSP_MODE_SHARED), viewsAt(), both));
+    CHECK(draw(*renderer, frameOf(BSP_MODE_TEMPORAL), viewsAt(), both) ==
+          draw(exact, frameOf(BSP_MODE_SHARED), viewsAt(), both));
 }
 
-TEST_CASE_FIXTURE(Opened, "scenes that cannot be drawn together, and placements that make no sense, are refused in a line") {
+TEST_CASE_FIXTURE(
+    Opened,
+    "scenes that cannot be drawn together, and placements that make no sense, are refused in a line") {
     const bsp::Scene discs = load(colourful(10, 5, 0, false)), gaussians = load(colourful(10, 6, 0, true));
-    const auto refused = [&](bsp_frame_info frame, const std::vector<bsp_instance>& instances, const std::string& part) {
+    const auto refused = [&](bsp_frame_info frame, const std::vector<bsp_instance>& instances,
+                             const std::string& part) {
         try {
             (void)draw(*renderer, frame, viewsAt(), instances);
             FAIL_CHECK("nothing was refused: " << part);
@@ -288,7 +308,8 @@ TEST_CASE_FIXTURE(Opened, "a scene that moves shows the file of its time, alone 
     CHECK(film.properties().splats == 600);
     for (const int i : {0, 2, 1}) {
         const bsp::Scene still = load(files[static_cast<std::size_t>(i)]);
-        const std::vector<float> expected = draw(*renderer, frameOf(BSP_MODE_SHARED, still.get()), viewsAt(), {});
+        const std::vector<float> expected =
+            draw(*renderer, frameOf(BSP_MODE_SHARED, still.get()), viewsAt(), {});
         bsp_frame_info frame = frameOf(BSP_MODE_SHARED, film.get());
         frame.flags = BSP_FRAME_SETTLED;
         frame.time_s = 0.1 * i + 0.05;
@@ -301,10 +322,14 @@ TEST_CASE_FIXTURE(Opened, "a scene that moves shows the file of its time, alone 
 }
 
 #ifdef BINOSPLAT_HAS_SPLIT_SCENE
-TEST_CASE_FIXTURE(Opened, "a streamed scene brings what the views ask for, frame by frame, and settled it is the whole of it") {
+TEST_CASE_FIXTURE(
+    Opened,
+    "a streamed scene brings what the views ask for, frame by frame, and settled it is the whole of it") {
     const Scene room = makeBuiltin("builtin:atelier", 20000);
-    test::splitScene(room, (path / "streamed").string(), {.leaf_splats = 2048, .levels = 3, .chunk_splats = 8192});
-    const bsp::Scene stream = load((path / "streamed").string(), 1), whole = load((path / "streamed").string());
+    test::splitScene(room, (path / "streamed").string(),
+                     {.leaf_splats = 2048, .levels = 3, .chunk_splats = 8192});
+    const bsp::Scene stream = load((path / "streamed").string(), 1),
+                     whole = load((path / "streamed").string());
     const bsp::Views views = whole.startViews(0.063, 1.2, 96, 64);
     bsp_frame_info frame = frameOf(BSP_MODE_SHARED, stream.get());
     const std::vector<float> full = draw(*renderer, frameOf(BSP_MODE_SHARED, whole.get()), views, {});

@@ -25,7 +25,8 @@ struct Faults {
     }
     ~Faults() {
         program.reset();
-        for (const char* name : {"VK_ADD_LAYER_PATH", "VK_INSTANCE_LAYERS", "BINOSPLAT_FAULT_ANY", "BINOSPLAT_FAULT_LIVE"}) {
+        for (const char* name :
+             {"VK_ADD_LAYER_PATH", "VK_INSTANCE_LAYERS", "BINOSPLAT_FAULT_ANY", "BINOSPLAT_FAULT_LIVE"}) {
             unsetenv(name);
         }
     }
@@ -38,7 +39,8 @@ struct Faults {
 
 // A pair of views in the program's image, of one scene or of two instances of it.
 struct Drawing {
-    Drawing(const ForeignProgram& program, const bsp::Scene& scene) : views(scene.startViews(0.063, 1.2, kSize.x, kSize.y)) {
+    Drawing(const ForeignProgram& program, const bsp::Scene& scene)
+        : views(scene.startViews(0.063, 1.2, kSize.x, kSize.y)) {
         target.colour = *program.floats->image;
         target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT;
         target.colour_after = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
@@ -54,7 +56,8 @@ struct Drawing {
     Drawing(const Drawing&) = delete;
 
     bsp_target target = bsp::make<bsp_target>(BSP_TYPE_TARGET);
-    std::array<bsp_instance, 2> instances{bsp::make<bsp_instance>(BSP_TYPE_INSTANCE), bsp::make<bsp_instance>(BSP_TYPE_INSTANCE)};
+    std::array<bsp_instance, 2> instances{bsp::make<bsp_instance>(BSP_TYPE_INSTANCE),
+                                          bsp::make<bsp_instance>(BSP_TYPE_INSTANCE)};
     bsp::Views views;
     bsp_frame_info frame = bsp::frame();
 };
@@ -90,10 +93,13 @@ int checkFailures(int step, int first = 1) {
         const bsp_result result = bsp_submit(renderer.get(), &drawing.frame, nullptr, &frame);
         const char* const call = faults.struck();
         faults.arm(0, 0);
-        INFO("call ", number, ": ", std::string(call != nullptr ? call : "none"), ": ", std::string(bsp_error_text()));
+        INFO("call ", number, ": ", std::string(call != nullptr ? call : "none"), ": ",
+             std::string(bsp_error_text()));
         if (call == nullptr) {
             CHECK(result == BSP_SUCCESS);
-            while (bsp_collect(renderer.get(), frame, nullptr) == BSP_NOT_READY) { std::this_thread::yield(); }
+            while (bsp_collect(renderer.get(), frame, nullptr) == BSP_NOT_READY) {
+                std::this_thread::yield();
+            }
             return failed;
         }
         ++failed;
@@ -108,7 +114,9 @@ int checkFailures(int step, int first = 1) {
     }
 }
 
-TEST_CASE("where any call of Vulkan fails as a frame is recorded, it is a code and a text, the next frame is right, and nothing leaks") {
+TEST_CASE(
+    "where any call of Vulkan fails as a frame is recorded, it is a code and a text, the next frame is "
+    "right, and nothing leaks") {
     CHECK(checkFailures(29, 28) >= 3);  // the first call ends the commands that upload placements
 }
 

@@ -15,7 +15,9 @@ struct Opened : Workplace {
     Opened() {
         auto info = bsp::make<bsp_device_info>(BSP_TYPE_DEVICE_INFO);
         info.validation = BINOSPLAT_TEST_VALIDATION ? 1 : 0;
-        info.log = [](void* user, const char* line) { static_cast<std::vector<std::string>*>(user)->emplace_back(line); };
+        info.log = [](void* user, const char* line) {
+            static_cast<std::vector<std::string>*>(user)->emplace_back(line);
+        };
         info.log_user = &lines;
         device.emplace(info);
         renderer.emplace(*device);
@@ -40,18 +42,24 @@ TEST_CASE_FIXTURE(AtWork, "it exports bsp_* and nothing else, under a name of it
     const std::string library = BINOSPLAT_LIBRARY_FILE;
     std::istringstream symbols(work.runCommand("nm -D --defined-only '" + library + "'").output);
     int count = 0;
-    for (std::string address, kind, name; symbols >> address >> kind >> name; ++count) { CHECK_MESSAGE(name.starts_with("bsp_"), name); }
+    for (std::string address, kind, name; symbols >> address >> kind >> name; ++count) {
+        CHECK_MESSAGE(name.starts_with("bsp_"), name);
+    }
     CHECK(count >= 18);
-    CHECK(work.runCommand("readelf -d '" + library + "'").output.find("[libbinosplat.so.0]") != std::string::npos);
+    CHECK(work.runCommand("readelf -d '" + library + "'").output.find("[libbinosplat.so.0]") !=
+          std::string::npos);
 }
 
-TEST_CASE_FIXTURE(Opened, "its pictures are render's to the last bit, and its depths those of what a pixel shows") {
+TEST_CASE_FIXTURE(Opened,
+                  "its pictures are render's to the last bit, and its depths those of what a pixel shows") {
     const bsp::Scene scene = load("builtin:fence");
     const double eye[]{0.1, -0.2, -1.0}, look[]{0.0, 0.0, 2.0}, up[]{0.0, -1.0, 0.0};
     const bsp::Views views = bsp::lookAt(eye, look, up, 0.063, 1.2, 96, 64);
-    for (const auto& [mode, name] : {std::pair(BSP_MODE_SHARED, "shared"), std::pair(BSP_MODE_PREDICTED, "predicted")}) {
+    for (const auto& [mode, name] :
+         {std::pair(BSP_MODE_SHARED, "shared"), std::pair(BSP_MODE_PREDICTED, "predicted")}) {
         go(
-            fmt::format("render builtin:fence --eye 0.1,-0.2,-1 --look 0,0,2 --up 0,-1,0 --fov-x 68.7549354156988 --size 96x64 --ipd 0.063 "
+            fmt::format("render builtin:fence --eye 0.1,-0.2,-1 --look 0,0,2 --up 0,-1,0 --fov-x "
+                        "68.7549354156988 --size 96x64 --ipd 0.063 "
                         "--mode {0} --out {0}",
                         name));
         bsp_frame_info frame = bsp::frame();
@@ -59,14 +67,17 @@ TEST_CASE_FIXTURE(Opened, "its pictures are render's to the last bit, and its de
         frame.flags = BSP_FRAME_DEPTH;
         const bsp_frame_result result = renderer->render(scene, views, frame);
         CHECK(result.splats_visible > 0);
-        const auto file = [&](const char* stem) { return readPicture(path / name / (std::string(stem) + BINOSPLAT_FLOAT_EXTENSION)); };
+        const auto file = [&](const char* stem) {
+            return readPicture(path / name / (std::string(stem) + BINOSPLAT_FLOAT_EXTENSION));
+        };
         const bsp::Picture left = renderer->colour(views[0], 0), depth = renderer->depth(views[0], 0);
         CHECK(left.values == file("left").values);
         CHECK(renderer->colour(views[1], 1).values == file("right").values);
         const Image sums = file("dominant_depth");
         double worst = 0.0;
         for (std::size_t i = 0; i < depth.values.size(); ++i) {
-            worst = std::max(worst, std::abs(static_cast<double>(depth.values[i] * left.values[4 * i + 3] - sums.values[i])));
+            worst = std::max(worst, std::abs(static_cast<double>(depth.values[i] * left.values[4 * i + 3] -
+                                                                 sums.values[i])));
         }
         CHECK(worst < 1e-5);
     }
@@ -80,12 +91,14 @@ TEST_CASE_FIXTURE(Opened, "depths of what is opaque are the twin's within 1e-4 o
     frame.mode = BSP_MODE_SHARED;
     frame.flags = BSP_FRAME_DEPTH;
     renderer->render(scene, views, frame);
-    const std::vector<float> depth = renderer->depth(views[0], 0).values, colour = renderer->colour(views[0], 0).values;
+    const std::vector<float> depth = renderer->depth(views[0], 0).values,
+                             colour = renderer->colour(views[0], 0).values;
     const auto& [w, x, y, z] = views[0].orientation;
     const auto& p = views[0].position;
     const glm::uvec2 size_px(96, 72);
     const Eye eye{{glm::dquat(w, x, y, z), {p[0], p[1], p[2]}},
-                  intrinsicsFromAngles({views[0].left_rad, views[0].right_rad, views[0].up_rad, views[0].down_rad}, size_px),
+                  intrinsicsFromAngles(
+                      {views[0].left_rad, views[0].right_rad, views[0].up_rad, views[0].down_rad}, size_px),
                   size_px};
     reference::Settings settings;
     settings.near = scene.properties().near;
@@ -133,7 +146,9 @@ TEST_CASE_FIXTURE(Opened, "twenty threads load, show, cancel and destroy scenes 
     CHECK(shown + cancelled == 60);
 }
 
-TEST_CASE_FIXTURE(Opened, "three views are a pair and one alone, and arrays with gaps between them make the scene that their file makes") {
+TEST_CASE_FIXTURE(Opened,
+                  "three views are a pair and one alone, and arrays with gaps between them make the scene "
+                  "that their file makes") {
     const Scene made = makeBuiltin("builtin:atelier", 3000);
     writePly(made, (path / "room.ply").string());
     const bsp::Scene of_file = load((path / "room.ply").string());
@@ -193,18 +208,22 @@ TEST_CASE_FIXTURE(Opened, "three views are a pair and one alone, and arrays with
     CHECK(most > 0.5);
 }
 
-TEST_CASE_FIXTURE(Opened, "a program compiled against an earlier header runs, and a later one does unless it asks for what is unknown") {
+TEST_CASE_FIXTURE(Opened,
+                  "a program compiled against an earlier header runs, and a later one does unless it asks "
+                  "for what is unknown") {
     const bsp::Scene scene = load("builtin:one-splat");
     float first = 0.0f, second = 1.0f;
     CHECK(draw_as_compiled(renderer->get(), scene.get(), AN_EARLIER_ONE, &first) == BSP_SUCCESS);
     CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE, &second) == BSP_SUCCESS);
     CHECK(first == second);
     CHECK(first > 0.1f);
-    CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE_AND_USES_IT, &second) == BSP_ERROR_INPUT);
+    CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE_AND_USES_IT, &second) ==
+          BSP_ERROR_INPUT);
     CHECK(std::string(bsp_error_text()).find("a later one is needed") != std::string::npos);
 }
 
-TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line, each thread has its own, and the next call works") {
+TEST_CASE_FIXTURE(Opened,
+                  "what is wrong is a code and a line, each thread has its own, and the next call works") {
     const auto refused = [](const std::function<void()>& action, bsp_result code, const std::string& part) {
         try {
             action();
@@ -252,32 +271,42 @@ TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line, each thread has i
 
 // The output of a script in tests/, run with Debian's numpy; none if that is not installed, or cannot load a
 // library under a sanitizer.
-std::optional<std::string> outputOf(const Workplace& work, const std::string& script, const std::string& arguments) {
+std::optional<std::string> outputOf(const Workplace& work, const std::string& script,
+                                    const std::string& arguments) {
     if (BINOSPLAT_TEST_SANITIZED) { return std::nullopt; }
     if (work.runCommand("/usr/bin/python3 -c 'import numpy'").exit_code != 0) {
         CHECK_MESSAGE(std::getenv("CI") == nullptr, "python3-numpy is not installed");
         return std::nullopt;
     }
-    const Outcome outcome = work.runCommand(fmt::format(
-        "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='{0}/engine/library' BINOSPLAT_LIBRARY='{1}' /usr/bin/python3 '{0}/tests/{2}' {3}",
-        BINOSPLAT_SOURCE_DIR, BINOSPLAT_LIBRARY_FILE, script, arguments));
+    const Outcome outcome =
+        work.runCommand(fmt::format("PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='{0}/engine/library' "
+                                    "BINOSPLAT_LIBRARY='{1}' /usr/bin/python3 '{0}/tests/{2}' {3}",
+                                    BINOSPLAT_SOURCE_DIR, BINOSPLAT_LIBRARY_FILE, script, arguments));
     CHECK_MESSAGE(outcome.exit_code == 0, outcome.errors);
     return outcome.output;
 }
 
 void checkArrays(const Workplace& work, const fs::path& ply, int frames) {
-    const auto output = outputOf(work, "engine/library/arrays.py", fmt::format("'{}' {}", ply.string(), frames));
+    const auto output =
+        outputOf(work, "engine/library/arrays.py", fmt::format("'{}' {}", ply.string(), frames));
     CHECK(output.value_or("all right\n") == "all right\n");
 }
 
-TEST_CASE_FIXTURE(AtWork, "Python draws a file's arrays as the file, turned cameras as they are, and refuses other shapes and types") {
+TEST_CASE_FIXTURE(AtWork,
+                  "Python draws a file's arrays as the file, turned cameras as they are, and refuses other "
+                  "shapes and types") {
     writePly(makeBuiltin("builtin:atelier", 3000), (work.path / "room.ply").string());
     checkArrays(work, work.path / "room.ply", 3);
 }
 
-TEST_CASE_FIXTURE(AtWork, "evaluate.py finds no more between a photograph and the same camera's picture than bytes lose") {
-    work.go("render builtin:fence --mode mono --eye 0.1,-0.2,-1 --look 0.1,-0.2,2 --up 0,-1,0 --fov-x 90 --size 96x64 --out photos");
-    work.write("cameras.json", R"([{"img_name": "mono.png", "width": 96, "height": 64, "fx": 48, "fy": 48, "position": [0.1, -0.2, -1],
+TEST_CASE_FIXTURE(
+    AtWork, "evaluate.py finds no more between a photograph and the same camera's picture than bytes lose") {
+    work.go(
+        "render builtin:fence --mode mono --eye 0.1,-0.2,-1 --look 0.1,-0.2,2 --up 0,-1,0 --fov-x 90 --size "
+        "96x64 --out photos");
+    work.write(
+        "cameras.json",
+        R"([{"img_name": "mono.png", "width": 96, "height": 64, "fx": 48, "fy": 48, "position": [0.1, -0.2, -1],
                                   "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
     fs::remove(work.path / "photos" / ("mono" BINOSPLAT_FLOAT_EXTENSION));
     const auto output = outputOf(work, "../docs/examples/evaluate.py", "builtin:fence cameras.json photos");

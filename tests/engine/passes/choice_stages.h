@@ -30,7 +30,9 @@ struct How {
     double error_bound = 0.0;
     gpu::uint most_cost = gpu::kMaxItems;
 };
-inline How withCost(std::uint64_t budget_cost) { return {.budget = static_cast<double>(budget_cost) / kPictureCost}; }
+inline How withCost(std::uint64_t budget_cost) {
+    return {.budget = static_cast<double>(budget_cost) / kPictureCost};
+}
 
 // What the device makes of an eye's tiles, with the list sorted.
 struct Chosen {
@@ -53,8 +55,9 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         most_tiles = std::max(most_tiles, eye.count());
         const std::vector<gpu::uint> zeros(eye.count(), 0);
         const Buffers& of = buffers.emplace_back(Buffers{
-            gpu.upload("kinds", eye.kinds), gpu.upload("costs", eye.costs), gpu.upload("errors", eye.errors), gpu.upload("prices", zeros),
-            gpu.upload("list", zeros), gpu.upload("mask", std::vector<gpu::uint>(std::size_t{(eye.size.x + 31) / 32} * eye.size.y, 0)),
+            gpu.upload("kinds", eye.kinds), gpu.upload("costs", eye.costs), gpu.upload("errors", eye.errors),
+            gpu.upload("prices", zeros), gpu.upload("list", zeros),
+            gpu.upload("mask", std::vector<gpu::uint>(std::size_t{(eye.size.x + 31) / 32} * eye.size.y, 0)),
             gpu.upload("history", eye.history)});
         gpu::TargetState& target = targets.emplace_back();
         target.tile_kinds = of.kinds.address<gpu::uint>();
@@ -73,7 +76,8 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         target.warp_counters.picture_cost = how.moves && !has_history ? how.picture_cost : 0;
         if (how.gaze) { target.counters.gaze = eyeGazeOf(*how.gaze, how.seen.intrinsics); }
     }
-    const Buffer bins = gpu.upload("bins", std::vector<gpu::uint>(gpu::kPriceBins, 0)), states = gpu.upload("targets", targets),
+    const Buffer bins = gpu.upload("bins", std::vector<gpu::uint>(gpu::kPriceBins, 0)),
+                 states = gpu.upload("targets", targets),
                  visible = gpu.upload("visible", std::vector{makeList(kVisible)});
     const auto first = states.address<gpu::TargetState>();
     const auto first_list = states.address<gpu::ListState>(offsetof(gpu::TargetState, chosen_tiles));
@@ -83,9 +87,12 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         const auto groups = static_cast<std::uint32_t>((most_tiles + gpu::kWarpGroup - 1) / gpu::kWarpGroup),
                    count = static_cast<std::uint32_t>(eyes.size());
         if (how.predicted) {
-            commands.dispatch(price, gpu::PricePass{first, first_list, bins.address<gpu::uint>(), how.most_cost}, groups, 1, count);
+            commands.dispatch(price,
+                              gpu::PricePass{first, first_list, bins.address<gpu::uint>(), how.most_cost},
+                              groups, 1, count);
         }
-        commands.dispatch(select, gpu::SelectPass{first, first_list, visible.address<gpu::ListState>(), 1}, groups, 1, count);
+        commands.dispatch(select, gpu::SelectPass{first, first_list, visible.address<gpu::ListState>(), 1},
+                          groups, 1, count);
     });
     targets = gpu.readBack<gpu::TargetState>(states, eyes.size());
     std::vector<Chosen> chosen;
@@ -93,11 +100,13 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         const Buffers& of = buffers[e];
         const std::size_t count = eyes[e].count();
         const auto read = [&](const Buffer& buffer) { return gpu.readBack<gpu::uint>(buffer, count); };
-        chosen.push_back({read(of.kinds), read(of.errors), read(of.costs), read(of.prices), gpu.readBack<gpu::uint>(bins, gpu::kPriceBins),
-                          gpu.readBack<gpu::uint>(of.list, std::min<std::size_t>(targets[e].chosen_tiles.count, count)),
-                          gpu.readBack<gpu::uint>(of.mask, std::size_t{(eyes[e].size.x + 31) / 32} * eyes[e].size.y),
-                          gpu.readBack<gpu::HistoryTile>(of.history, eyes[e].history.size()), targets[e].warp_counters,
-                          targets[e].chosen_tiles, targets[e].chosen_visible});
+        chosen.push_back(
+            {read(of.kinds), read(of.errors), read(of.costs), read(of.prices),
+             gpu.readBack<gpu::uint>(bins, gpu::kPriceBins),
+             gpu.readBack<gpu::uint>(of.list, std::min<std::size_t>(targets[e].chosen_tiles.count, count)),
+             gpu.readBack<gpu::uint>(of.mask, std::size_t{(eyes[e].size.x + 31) / 32} * eyes[e].size.y),
+             gpu.readBack<gpu::HistoryTile>(of.history, eyes[e].history.size()), targets[e].warp_counters,
+             targets[e].chosen_tiles, targets[e].chosen_visible});
         std::ranges::sort(chosen.back().list);
     }
     return chosen;

@@ -45,9 +45,12 @@ std::vector<SceneChange> boxesAbout(const Eye& eye, int count, unsigned seed) {
     const auto draw = [&](double low, double high) { return low + (high - low) * drawUnit(random); };
     std::vector<SceneChange> boxes;
     for (int i = 0; i < count; ++i) {
-        const glm::dvec3 middle = eye.world_from_camera.position + glm::dvec3(draw(-3, 3), draw(-3, 3), draw(-3, 3));
-        const glm::dvec3 half = std::pow(10.0, draw(-3.0, 0.5)) * glm::dvec3(draw(0, 1), draw(0, 1), draw(0, 1));
-        boxes.push_back({glm::vec3(middle - half), glm::vec3(middle + half), static_cast<float>(draw(0.01, 1.0))});
+        const glm::dvec3 middle =
+            eye.world_from_camera.position + glm::dvec3(draw(-3, 3), draw(-3, 3), draw(-3, 3));
+        const glm::dvec3 half =
+            std::pow(10.0, draw(-3.0, 0.5)) * glm::dvec3(draw(0, 1), draw(0, 1), draw(0, 1));
+        boxes.push_back(
+            {glm::vec3(middle - half), glm::vec3(middle + half), static_cast<float>(draw(0.01, 1.0))});
     }
     return boxes;
 }
@@ -83,7 +86,8 @@ void checkWarped(Gpu& gpu, const Way& way) {
         for (const std::size_t e : {0, 1}) {
             EyeOnDevice made = walk.read(static_cast<int>(e));
             before[e].history.hidden = hidden[e];
-            reference::WarpedHistory warped = reference::warpHistory(before[e].history, walk.eyes()[e], hidden[e], settings.background);
+            reference::WarpedHistory warped =
+                reference::warpHistory(before[e].history, walk.eyes()[e], hidden[e], settings.background);
             one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
             blocks += warped.one_by_one.size();
             compareWarped(all, made, std::move(warped.picture));
@@ -130,17 +134,20 @@ void checkFirst(Gpu& gpu, const Way& way) {
         CHECK(pairs == test::countOf(result, e == 0 ? "tile_pairs_left" : "tile_pairs_right"));
         reference::Settings twin_settings{.background = settings.background};
         twin_settings.inverse_depth_moments = true;
-        const reference::History twin = reference::historyOf(eye, reference::render(way.view.scene, eye, twin_settings),
-                                                             std::vector<std::uint64_t>(made.history.tiles.size()));
+        const reference::History twin =
+            reference::historyOf(eye, reference::render(way.view.scene, eye, twin_settings),
+                                 std::vector<std::uint64_t>(made.history.tiles.size()));
         for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
             const auto &a = made.history.pixels[i], &b = twin.pixels[i];
             if (isHidden(test::tileOf(i, eye.size_px))) { continue; }  // nobody looks there
             ++pixels;
             const bool same = a.has_value() == b.has_value();
-            other_depths += same && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)) ? 0 : 1;
+            other_depths +=
+                same && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)) ? 0 : 1;
             // On a single surface, the spread is only rounding.
             constexpr std::uint32_t kRounding = 12;
-            other_spreads += same && (!a || std::max(a->spread, kRounding) == std::max(b->spread, kRounding)) ? 0 : 1;
+            other_spreads +=
+                same && (!a || std::max(a->spread, kRounding) == std::max(b->spread, kRounding)) ? 0 : 1;
         }
     }
     CHECK(test::share(other_depths, pixels) <= 0.01);
@@ -152,7 +159,9 @@ TEST_CASE_FIXTURE(Gpu, "warp_history and warp_pixels make the twin's picture, an
     checkWarped(*this, {evenFence(), true, false});
 }
 
-TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses, as on software devices, or as what they are") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "pixels are the same whether they are moved as addresses, as on software devices, or as what they are") {
     const auto walk = [](HistoryWalk& of) {
         for (int step = 0; step < 3; ++step) { of.go(step, 0.0); }
         return of.read(kRight).history.rgba;
@@ -161,13 +170,15 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses,
         const ViewedScene& view = half_floats ? evenFence() : atelier();
         HistoryWalk own(*this, view, {.half_floats = half_floats});
         const auto expected = walk(own);
-        for (const auto& [name, last_constant] : {std::pair("warp_history", 4u), std::pair("warp_pixels", 3u)}) {
+        for (const auto& [name, last_constant] :
+             {std::pair("warp_history", 4u), std::pair("warp_pixels", 3u)}) {
             constexpr std::uint32_t kDecorate = 71, kSpecId = 1;
             const auto embedded = embeddedShader(name);
             std::vector<std::uint32_t>& words = context().replacedShaders()[name];
             words.assign(embedded.begin(), embedded.end());
             for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
-                const bool is_it = (words[at] & 0xffff) == kDecorate && words[at + 2] == kSpecId && words[at + 3] == last_constant;
+                const bool is_it = (words[at] & 0xffff) == kDecorate && words[at + 2] == kSpecId &&
+                                   words[at + 3] == last_constant;
                 if (is_it) { words[at + 3] = 99; }  // an id that nobody sets, so by_address keeps its default
             }
         }
@@ -177,13 +188,17 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "where there is no history both pictures are rendered in full, and what they leave for later is the twin's") {
+TEST_CASE_FIXTURE(Gpu,
+                  "where there is no history both pictures are rendered in full, and what they leave for "
+                  "later is the twin's") {
     checkFirst(*this, {atelier(), false, false});
     checkFirst(*this, {fence(), true, true});
     checkFirst(*this, {atelier(), false, true, 0.05});
 }
 
-TEST_CASE_FIXTURE(Gpu, "pictures from histories and without are so in floats and half floats, whatever lenses hide" * test::nightly()) {
+TEST_CASE_FIXTURE(
+    Gpu, "pictures from histories and without are so in floats and half floats, whatever lenses hide" *
+             test::nightly()) {
     for (const bool hides : {false, true}) {
         checkWarped(*this, {atelier(), false, hides});
         checkWarped(*this, {evenFence(), true, hides});
@@ -195,16 +210,22 @@ TEST_CASE_FIXTURE(Gpu, "pictures from histories and without are so in floats and
 }
 
 // What pixels twice as wide lose in a tile, with splats sampled as the tile's own pixels would see them.
-double widerSquares(const ViewedScene& view, const Eye& eye, const reference::HistoryTile& tile, std::size_t index) {
+double widerSquares(const ViewedScene& view, const Eye& eye, const reference::HistoryTile& tile,
+                    std::size_t index) {
     const reference::Settings settings{.background = {0.1, 0.2, 0.3}};
     test::TwinStages stages({view.name, view.scene, eye}, settings);
-    const auto picture = [&] { return reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, eye, settings); };
+    const auto picture = [&] {
+        return reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, eye, settings);
+    };
     const reference::Picture full = picture();
-    for (reference::ProjectedSplat& splat : stages.splats) { splat = reference::asSeenWider(splat, eye.size_px); }
+    for (reference::ProjectedSplat& splat : stages.splats) {
+        splat = reference::asSeenWider(splat, eye.size_px);
+    }
     return reference::widerSquares(tile, full, picture(), index, eye.size_px);
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
+TEST_CASE_FIXTURE(
+    Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
     for (const ViewedScene* view : {&atelier(), &fence()}) {
         CAPTURE(view->name);
         // Two walks are equal so far; one of them renders tiles again in the last frame.
@@ -213,7 +234,8 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
         HistoryWalk before(*this, *view);
         for (int step = 0; step <= kFrames; ++step) { before.go(step, step == kFrames ? 0.5 : 0.0); }
         const std::vector<gpu::uint> chosen = before.read(kLeft).kinds;
-        const auto measured = static_cast<std::uint32_t>(std::find(chosen.begin() + 6, chosen.end(), gpu::kTilePredicted) - chosen.begin());
+        const auto measured = static_cast<std::uint32_t>(
+            std::find(chosen.begin() + 6, chosen.end(), gpu::kTilePredicted) - chosen.begin());
         REQUIRE(measured < gpu::kMeasuredParts);
         FrameResult result;
         for (int step = 0; step <= kFrames; ++step) {
@@ -224,7 +246,8 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
         std::array<std::vector<std::optional<std::uint32_t>>, 2> prices;
         std::array<std::vector<std::uint64_t>, 2> costs;
         std::uint64_t picture_cost = 0;
-        std::array<EyeOnDevice, 2> made{walk.read(kLeft), walk.read(kRight)}, warped{only_warps.read(kLeft), only_warps.read(kRight)};
+        std::array<EyeOnDevice, 2> made{walk.read(kLeft), walk.read(kRight)},
+            warped{only_warps.read(kLeft), only_warps.read(kRight)};
         for (std::size_t e = 0; e < 2; ++e) {
             std::vector<double> errors;
             costs[e].assign(made[e].costs.begin(), made[e].costs.end());
@@ -232,14 +255,15 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
                 errors.push_back(made[e].errors[t] / kErrorSteps);
                 picture_cost += costs[e][t];
                 CHECK(costs[e][t] == reference::costOf(warped[e].history.tiles[t]));
-                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].history.tiles[t]), 1e-5, 1.0 / kErrorSteps));
+                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].history.tiles[t]), 1e-5,
+                                   1.0 / kErrorSteps));
             }
             kinds[e].assign(costs[e].size(), TileKind::kNone);
             prices[e] = reference::price(kinds[e], errors, costs[e]);
         }
-        reference::selectTogether(
-            std::array{reference::PricedTiles{kinds[0], prices[0], costs[0]}, reference::PricedTiles{kinds[1], prices[1], costs[1]}},
-            static_cast<std::uint64_t>(0.5f * static_cast<float>(picture_cost)));
+        reference::selectTogether(std::array{reference::PricedTiles{kinds[0], prices[0], costs[0]},
+                                             reference::PricedTiles{kinds[1], prices[1], costs[1]}},
+                                  static_cast<std::uint64_t>(0.5f * static_cast<float>(picture_cost)));
         std::size_t rendered = 0;
         double left = 0.0, wider = 0.0;
         reference::SquaresOfTiles sums;
@@ -273,18 +297,23 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
         const double all = 2.0 * 768.0 * static_cast<double>(kinds[0].size());
         CHECK(wider > 0.0);
         CHECK(test::isNear(result.half_loss, wider * gpu::kMeasuredParts / all, 0.01, 1e-6));
-        CHECK(test::isNear(result.warp_error, left / all * std::min(sums.found / sums.expected, 1.0), 0.01, 1e-6));
+        CHECK(test::isNear(result.warp_error, left / all * std::min(sums.found / sums.expected, 1.0), 0.01,
+                           1e-6));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also where nothing is expected to go wrong") {
+TEST_CASE_FIXTURE(
+    Gpu, "every tile of a picture that moves has its turn, also where nothing is expected to go wrong") {
     // Bars across the view, alternately near and far, in the background's colour: no block has a single
     // depth, and none looks wrong.
     std::vector<test::Splat> splats;
     for (int bar = -7; bar <= 7; ++bar) {
         const float z = bar % 2 == 0 ? 1.0f : 1.5f;
-        splats.push_back(
-            {{0.0f, 0.06f * z * static_cast<float>(bar), z}, {1, 0, 0, 0}, z * glm::vec2(3.0f, 0.02f), 0.99f, glm::vec3(0.5f)});
+        splats.push_back({{0.0f, 0.06f * z * static_cast<float>(bar), z},
+                          {1, 0, 0, 0},
+                          z * glm::vec2(3.0f, 0.02f),
+                          0.99f,
+                          glm::vec3(0.5f)});
     }
     const ViewedScene view{"bars", test::makeScene(splats), test::makeEye({96, 64})};
     HistoryWalk walk(*this, view, {.background = glm::dvec3(0.5)});
@@ -305,11 +334,13 @@ TEST_CASE("what lies in a box is seen in its rectangle, also where the box reach
         if (!rects.empty()) { CHECK(rects[0].error == gpu::kChangedError * box.amount); }
         bool is_before = false, is_behind = false;
         for (int i = 0; i < 200; ++i) {
-            const glm::dvec3 at = glm::mix(glm::dvec3(box.low), glm::dvec3(box.high), glm::dvec3(draw(), draw(), draw()));
+            const glm::dvec3 at =
+                glm::mix(glm::dvec3(box.low), glm::dvec3(box.high), glm::dvec3(draw(), draw(), draw()));
             const glm::dvec3 c = camera_from_world * (at - eye.world_from_camera.position);
             (c.z < 0.2 ? is_behind : is_before) = true;
             if (c.z < 0.2) { continue; }
-            const glm::dvec2 place(eye.intrinsics.fx * c.x / c.z + eye.intrinsics.cx, eye.intrinsics.fy * c.y / c.z + eye.intrinsics.cy);
+            const glm::dvec2 place(eye.intrinsics.fx * c.x / c.z + eye.intrinsics.cx,
+                                   eye.intrinsics.fy * c.y / c.z + eye.intrinsics.cy);
             if (place.x < 0.0 || place.y < 0.0 || place.x >= 200.0 || place.y >= 150.0) { continue; }
             REQUIRE(rects.size() == 1);
             REQUIRE(glm::all(glm::lessThanEqual(glm::dvec2(rects[0].begin_px), place)));
@@ -323,7 +354,9 @@ TEST_CASE("what lies in a box is seen in its rectangle, also where the box reach
     CHECK(through > 20);
 }
 
-TEST_CASE("a box before the eye has a rectangle of its own size and the low-pass, one beside it or behind it has none") {
+TEST_CASE(
+    "a box before the eye has a rectangle of its own size and the low-pass, one beside it or behind it has "
+    "none") {
     const Eye eye = test::makeEye({101, 101});
     const auto rectOf = [&](const glm::vec3& low, const glm::vec3& high) {
         const SceneChange box{low, high, 1.0f};
@@ -352,7 +385,8 @@ TEST_CASE("more changes than a picture takes are joined, and none is lost") {
         if (alone.empty()) { continue; }
         CHECK(std::ranges::any_of(rects, [&](const gpu::ChangedRect& rect) {
             return glm::all(glm::lessThanEqual(rect.begin_px, alone[0].begin_px)) &&
-                   glm::all(glm::greaterThanEqual(rect.end_px, alone[0].end_px)) && rect.error >= alone[0].error;
+                   glm::all(glm::greaterThanEqual(rect.end_px, alone[0].end_px)) &&
+                   rect.error >= alone[0].error;
         }));
     }
 }
@@ -374,7 +408,9 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
         const std::vector<gpu::ChangedRect> rects = rectsOf(boxesAbout(eye, 60, 3), eye, 0.2);
         REQUIRE(rects.size() >= 3);
         std::vector<reference::ChangedRect> twin_rects;
-        for (const gpu::ChangedRect& rect : rects) { twin_rects.push_back({rect.begin_px, rect.end_px, static_cast<double>(rect.error)}); }
+        for (const gpu::ChangedRect& rect : rects) {
+            twin_rects.push_back({rect.begin_px, rect.end_px, static_cast<double>(rect.error)});
+        }
         reference::markChanged(twin, size_px, twin_rects);
         const Buffer tile_buffer = upload("tiles", tiles), rect_buffer = upload("rects", rects);
         const gpu::MarkChangedPass pass{.tiles = tile_buffer.address<gpu::HistoryTile>(),
@@ -389,7 +425,8 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
             CHECK(marked[t].cost == tiles[t].cost);
             CHECK(marked[t].age == tiles[t].age);
             for (int q = 0; q < 4; ++q) {
-                REQUIRE(std::abs(static_cast<double>(marked[t].errors[q]) - twin[t].errors[static_cast<std::size_t>(q)]) < 1e-5);
+                REQUIRE(std::abs(static_cast<double>(marked[t].errors[q]) -
+                                 twin[t].errors[static_cast<std::size_t>(q)]) < 1e-5);
                 changed += marked[t].errors[q] != tiles[t].errors[q] ? 1 : 0;
             }
         }

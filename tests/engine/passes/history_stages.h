@@ -32,13 +32,16 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     const Picture& picture = frame.picture(index);
     EyeOnDevice read{{eye, {}, {}, {}}, {}, {}, {}};
     const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
-    for (const gpu::vec4& colour : picture.half_floats ? unpackHalves(gpu.readBack<gpu::uvec2>(picture.colours, pixels))
-                                                       : gpu.readBack<gpu::vec4>(picture.colours, pixels)) {
+    for (const gpu::vec4& colour : picture.half_floats
+                                       ? unpackHalves(gpu.readBack<gpu::uvec2>(picture.colours, pixels))
+                                       : gpu.readBack<gpu::vec4>(picture.colours, pixels)) {
         read.history.rgba.emplace_back(colour);
     }
     for (const gpu::uint word : gpu.readBack<gpu::uint>(picture.words, pixels)) {
         const reference::Arrival held = unpackArrival(word);
-        read.history.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
+        read.history.pixels.push_back(
+            word == 0 ? std::nullopt
+                      : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
     }
     const std::size_t count = tileCount(eye.size_px);
     for (const gpu::HistoryTile& tile : gpu.readBack<gpu::HistoryTile>(picture.tiles, count)) {
@@ -46,7 +49,9 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     }
     if (const WarpBuffers* chosen = frame.chosenTiles(index)) {
         const auto array = [&](gpu::DeviceAddress<gpu::uint> at) {
-            return gpu.readBack<gpu::uint>(chosen->tiles(), count, at.value - chosen->tileKinds().value + WarpBuffers::tileKindsOffset());
+            return gpu.readBack<gpu::uint>(
+                chosen->tiles(), count,
+                at.value - chosen->tileKinds().value + WarpBuffers::tileKindsOffset());
         };
         read.kinds = array(chosen->tileKinds());
         read.errors = array(chosen->tileErrors());
@@ -67,13 +72,18 @@ struct WalkSettings {
 class HistoryWalk {
 public:
     HistoryWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
-        : gpu_(gpu), view_(view), settings_(std::move(settings)), scene_(gpu.context(), view.scene), frame_(gpu.context(), scene_) {}
+        : gpu_(gpu),
+          view_(view),
+          settings_(std::move(settings)),
+          scene_(gpu.context(), view.scene),
+          frame_(gpu.context(), scene_) {}
 
     FrameResult go(double step, double budget, std::uint32_t measured_part = gpu::kMeasuredParts) {
         Eye eye = view_.eye;
         eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
         eye.world_from_camera.orientation =
-            eye.world_from_camera.orientation * glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
+            eye.world_from_camera.orientation *
+            glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
         eyes_ = stereoPair(eye, 0.063);
         glm::dquat& right = eyes_[kRight].world_from_camera.orientation;
         right = right * glm::angleAxis(settings_.cant, glm::dvec3(0, 1, 0));
@@ -127,7 +137,8 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
         differences.squares += glm::dot(off, off) / 4.0;
         const auto &a = made.history.pixels[i], &b = twin.pixels[i];
         // All depths of a block change by the ratio of its middle's.
-        const bool same = a.has_value() == b.has_value() && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
+        const bool same =
+            a.has_value() == b.has_value() && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
         differences.other_depths += same ? 0 : 1;
         differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;
     }
@@ -141,13 +152,15 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
             differences.grown += a.grown[q];
             differences.twin_grown += b.grown[q];
         }
-        differences.other_gradients += isNear(a.squared_gradient, b.squared_gradient, 0.02, 264.0 / kErrorSteps) ? 0 : 1;
+        differences.other_gradients +=
+            isNear(a.squared_gradient, b.squared_gradient, 0.02, 264.0 / kErrorSteps) ? 0 : 1;
         differences.other_tiles += a.cost == b.cost && a.age == b.age && a.unseen == b.unseen ? 0 : 1;
     }
     reference::growErrors(twin.tiles);
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
         for (std::size_t q = 0; q < 4; ++q) {
-            differences.other_errors += isNear(made.history.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
+            differences.other_errors +=
+                isNear(made.history.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
         }
     }
     differences.tiles += twin.tiles.size();

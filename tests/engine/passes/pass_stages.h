@@ -64,20 +64,28 @@ struct SceneOnDevice {
 inline constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
 // Only the distance to the eye is rounded when the device moves a splat to camera space, since the eye has 48
 // bits.
-inline double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
+inline double distanceToRound(const glm::dvec3& position, const Eye& eye) {
+    return glm::length(position - eye.world_from_camera.position);
+}
 
 // The float for an integer of the order-preserving encoding.
-inline float floatOfSortable(std::uint32_t bits) { return std::bit_cast<float>((bits >> 31) != 0 ? bits & 0x7fffffffu : ~bits); }
+inline float floatOfSortable(std::uint32_t bits) {
+    return std::bit_cast<float>((bits >> 31) != 0 ? bits & 0x7fffffffu : ~bits);
+}
 
 // The lowest and the highest depth that a key may stand for (shaders/sort/compact.comp).
 inline std::pair<float, float> depthsOfKey(std::uint32_t key, float near) {
     const std::uint32_t first_exact = std::bit_cast<std::uint32_t>(0.5f * near) | 0x80000000u;
-    const std::uint32_t first_key = (first_exact >> gpu::kNearKeyShift) + 1, last_key = first_key + gpu::kExactDepthKeys;
+    const std::uint32_t first_key = (first_exact >> gpu::kNearKeyShift) + 1,
+                        last_key = first_key + gpu::kExactDepthKeys;
     if (key < first_key) {
         const std::uint32_t first = key << gpu::kNearKeyShift;
         return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kNearKeyShift) - 1)};
     }
-    if (key < last_key) { return {floatOfSortable(first_exact + key - first_key), floatOfSortable(first_exact + key - first_key)}; }
+    if (key < last_key) {
+        return {floatOfSortable(first_exact + key - first_key),
+                floatOfSortable(first_exact + key - first_key)};
+    }
     const std::uint32_t first = first_exact + gpu::kExactDepthKeys + ((key - last_key) << gpu::kFarKeyShift);
     return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kFarKeyShift) - 1)};
 }
@@ -100,7 +108,8 @@ inline glm::dvec2 referenceOf(const gpu::ProjectedSplat& splat) {
     const glm::vec4 rest = glm::unpackSnorm4x8(splat.colour.y);
     glm::dvec2 reference(splat.reference_px);
     for (int axis = 0; axis < 2; ++axis) {
-        reference[axis] += static_cast<double>(rest[2 + axis]) * std::ldexp(1.0, std::ilogb(reference[axis]) - 24);
+        reference[axis] +=
+            static_cast<double>(rest[2 + axis]) * std::ldexp(1.0, std::ilogb(reference[axis]) - 24);
     }
     return reference;
 }
@@ -109,10 +118,12 @@ inline glm::dvec2 referenceOf(const gpu::ProjectedSplat& splat) {
 inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
     gpu::ProjectedSplat result{};
     result.reference_px = splat.low_pass ? splat.reference_px : splat.plane_offset;
-    result.plane_from_pixel = splat.disc ? glm::vec3(splat.plane_from_pixel) : glm::vec3(gpu::kMaxPlaneSlope, 0.0f, gpu::kMaxPlaneSlope);
+    result.plane_from_pixel = splat.disc ? glm::vec3(splat.plane_from_pixel)
+                                         : glm::vec3(gpu::kMaxPlaneSlope, 0.0f, gpu::kMaxPlaneSlope);
     result.perspective = splat.perspective;
     result.inverse_depth = static_cast<float>(splat.disc ? splat.inverse_depth : 1.0 / splat.depth);
-    result.opacity = std::copysign(static_cast<float>(std::log2(splat.opacity)), splat.low_pass ? 1.0f : -1.0f);
+    result.opacity =
+        std::copysign(static_cast<float>(std::log2(splat.opacity)), splat.low_pass ? 1.0f : -1.0f);
     const glm::vec3 colour(splat.colour);
     result.colour = {glm::packHalf2x16(glm::vec2(colour)), glm::packHalf2x16(glm::vec2(colour.z, 0.0f))};
     return result;
@@ -125,23 +136,27 @@ struct ProjectedOnDevice {
 };
 
 // `tile_mask`, unless null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
-inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order,
-                                         std::uint32_t pair_capacity = UINT32_MAX, gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
-    const Kernel& kernel = gpu.kernel(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(device.scene.shDegree()),
-                                                    .masked = tile_mask.value != 0,
-                                                    .splat_kind = device.scene.splatKind()});
+inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device,
+                                         const std::vector<std::uint32_t>& order,
+                                         std::uint32_t pair_capacity = UINT32_MAX,
+                                         gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
+    const Kernel& kernel =
+        gpu.kernel(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(device.scene.shDegree()),
+                                 .masked = tile_mask.value != 0,
+                                 .splat_kind = device.scene.splatKind()});
     const std::size_t count = order.size();
     gpu::TargetState state{};
     state.tile_mask = tile_mask;
-    ProjectedOnDevice result{static_cast<std::uint32_t>(count),
-                             gpu.upload("list", std::vector{makeList(count)}),
-                             gpu.upload("order", order),
-                             gpu.allocate<gpu::ProjectedSplat>("splats", count),
-                             gpu.allocate<glm::uvec2>("tile sets", count),
-                             gpu.allocate<std::uint32_t>("tile counts", count),
-                             gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
-                             gpu.upload("pairs", std::vector{gpu::ListState{}}),
-                             gpu.upload("target", std::vector{state})};
+    ProjectedOnDevice result{
+        static_cast<std::uint32_t>(count),
+        gpu.upload("list", std::vector{makeList(count)}),
+        gpu.upload("order", order),
+        gpu.allocate<gpu::ProjectedSplat>("splats", count),
+        gpu.allocate<glm::uvec2>("tile sets", count),
+        gpu.allocate<std::uint32_t>("tile counts", count),
+        gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
+        gpu.upload("pairs", std::vector{gpu::ListState{}}),
+        gpu.upload("target", std::vector{state})};
     gpu::ProjectPass pass{};
     pass.chunks = device.scene.chunks();
     pass.eyes = device.eyeViews();
@@ -156,7 +171,9 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
     pass.targets = result.target.address<gpu::TargetState>();
     pass.chunk_bits = device.scene.chunkBits();
     pass.is_dimmed = device.scene.traits().is_dimmed;
-    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block)); });
+    gpu.run([&](Commands& commands) {
+        commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block));
+    });
     return result;
 }
 

@@ -22,10 +22,13 @@ std::vector<Eye> eyesAbout(const ViewedScene& view, int count) {
         Eye eye = view.eye;
         if (i > 0) {
             const glm::dvec3 splat(view.scene.positions[random() % view.scene.size()]);
-            eye.world_from_camera.position = splat + std::pow(10.0, draw(-3.0, 0.5)) * glm::dvec3(draw(-1, 1), draw(-1, 1), draw(-1, 1));
-            eye.world_from_camera.orientation = glm::normalize(glm::dquat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)));
+            eye.world_from_camera.position =
+                splat + std::pow(10.0, draw(-3.0, 0.5)) * glm::dvec3(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+            eye.world_from_camera.orientation =
+                glm::normalize(glm::dquat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)));
             const double focal = eye.size_px.x * std::pow(2.0, draw(-1.5, 2.0));
-            eye.intrinsics = {focal, focal * draw(0.8, 1.2), eye.size_px.x * draw(0.2, 0.8), eye.size_px.y * draw(0.2, 0.8)};
+            eye.intrinsics = {focal, focal * draw(0.8, 1.2), eye.size_px.x * draw(0.2, 0.8),
+                              eye.size_px.y * draw(0.2, 0.8)};
             eye.own_pixel_px = i % 4 == 3 ? 0.5 : 1.0;
         }
         Eye canted = stereoPair(eye, 0.063)[1];
@@ -45,8 +48,8 @@ public:
         gpu::ListState state;
     };
 
-    Pages(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape, const std::vector<Eye>& eyes,
-          const Kernel* kernel = nullptr)
+    Pages(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape,
+          const std::vector<Eye>& eyes, const Kernel* kernel = nullptr)
         : gpu_(gpu),
           kernel_(kernel != nullptr ? *kernel : gpu.kernel(CullPagesKernel{.splat_kind = shape})),
           count_(static_cast<gpu::uint>(pages.size())) {
@@ -78,13 +81,16 @@ public:
 
 private:
     // In the order in which lib/block.glsl finds them.
-    [[nodiscard]] std::vector<std::uint32_t> listed(const std::vector<std::uint32_t>& list, std::uint32_t visible) const {
+    [[nodiscard]] std::vector<std::uint32_t> listed(const std::vector<std::uint32_t>& list,
+                                                    std::uint32_t visible) const {
         const std::uint32_t groups = (count_ + gpu::kGroupSize - 1) / gpu::kGroupSize;
         const bool one_run = groups <= gpu::kMostPageGroupsInOneRun;
-        const std::uint32_t length = one_run ? groups : (groups + gpu::kSumRuns - 1) / gpu::kSumRuns, runs = (groups + length - 1) / length;
+        const std::uint32_t length = one_run ? groups : (groups + gpu::kSumRuns - 1) / gpu::kSumRuns,
+                            runs = (groups + length - 1) / length;
         std::vector<std::uint32_t> found;
         for (std::uint32_t run = 0; run < runs; ++run) {
-            const std::uint32_t begin = one_run ? 0 : list[count_ + run], end = run + 1 < runs ? list[count_ + run + 1] : visible;
+            const std::uint32_t begin = one_run ? 0 : list[count_ + run],
+                                end = run + 1 < runs ? list[count_ + run + 1] : visible;
             const auto first = list.begin() + run * length * gpu::kGroupSize;
             found.insert(found.end(), first, first + (end - begin));
         }
@@ -125,8 +131,11 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye
                     const Kernel* other_kernel = nullptr) {
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = test::pagesOf(count);
-    const Kernel& kernel = other_kernel != nullptr ? *other_kernel : gpu.kernel(CullKernel{.splat_kind = device.scene.splatKind()});
-    const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
+    const Kernel& kernel = other_kernel != nullptr
+                               ? *other_kernel
+                               : gpu.kernel(CullKernel{.splat_kind = device.scene.splatKind()});
+    const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords),
+                 counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
     pass.chunks = device.scene.chunks();
@@ -140,15 +149,16 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye
     pass.eye_count = eye_count;
     pass.capacity = count;
     gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
-    return {gpu.readBack<std::uint32_t>(bits, groups * kGroupWords), gpu.readBack<std::uint32_t>(counts, groups),
-            gpu.readBack<gpu::ListState>(list, 1)[0]};
+    return {gpu.readBack<std::uint32_t>(bits, groups * kGroupWords),
+            gpu.readBack<std::uint32_t>(counts, groups), gpu.readBack<gpu::ListState>(list, 1)[0]};
 }
 
 // The twin's bounds of a scene's pages, which those of the device contain with little to spare.
 std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& packed) {
     std::vector<reference::Page> pages;
     for (std::size_t first = 0; first < scene.size(); first += gpu::kPageSplats) {
-        pages.push_back(reference::boundPage(scene, first, std::min<std::size_t>(gpu::kPageSplats, scene.size() - first)));
+        pages.push_back(reference::boundPage(scene, first,
+                                             std::min<std::size_t>(gpu::kPageSplats, scene.size() - first)));
         const gpu::ScenePage& page = packed.pages()[pages.size() - 1];
         const reference::Page& twin = pages.back();
         REQUIRE(page.count == twin.count);
@@ -170,8 +180,11 @@ std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& p
 // Runs cull_pages and cull from `count` places around each of the scenes.
 void checkPages(Gpu& gpu, int count) {
     std::size_t kept = 0, left_out = 0, splats_kept = 0, pages_left_out = 0;
-    std::vector<ViewedScene> scenes{test::viewBuiltin("builtin:atelier", {256, 192}, 20000), test::viewCloud({200, 150})};
-    for (const bool antialiased : {false, true}) { scenes.push_back(test::viewGaussians({200, 150}, antialiased)); }
+    std::vector<ViewedScene> scenes{test::viewBuiltin("builtin:atelier", {256, 192}, 20000),
+                                    test::viewCloud({200, 150})};
+    for (const bool antialiased : {false, true}) {
+        scenes.push_back(test::viewGaussians({200, 150}, antialiased));
+    }
     for (ViewedScene& view : scenes) {
         CAPTURE(view.name);
         view.scene = test::inMortonOrder(view.scene);
@@ -189,7 +202,8 @@ void checkPages(Gpu& gpu, int count) {
                 REQUIRE(std::ranges::is_sorted(found.list));
                 const auto some = std::span(eyes).subspan(first, static_cast<std::size_t>(many));
                 const auto least = reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings);
-                const auto most = reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings, 1e-4);
+                const auto most =
+                    reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings, 1e-4);
                 for (std::uint32_t p = 0; p < pages.size(); ++p) {
                     const bool is_found = std::ranges::binary_search(found.list, p);
                     if (least[p] != 0) { REQUIRE(is_found); }
@@ -232,7 +246,8 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
     const Buffer bit_buffer = gpu.upload("bits", bits), offset_buffer = gpu.upload("offsets", offsets),
                  list = gpu.upload("list", std::vector{test::makeList(visible.size())});
-    const Buffer keys = gpu.allocate<std::uint32_t>("keys", visible.size()), splats = gpu.allocate<std::uint32_t>("splats", visible.size());
+    const Buffer keys = gpu.allocate<std::uint32_t>("keys", visible.size()),
+                 splats = gpu.allocate<std::uint32_t>("splats", visible.size());
     gpu::CompactPass pass{};
     pass.chunks = device.scene.chunks();
     pass.eyes = device.eyeViews();
@@ -248,24 +263,33 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     pass.splat_count = count;
     pass.chunk_bits = device.scene.chunkBits();
     gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
-    return {gpu.readBack<std::uint32_t>(keys, visible.size()), gpu.readBack<std::uint32_t>(splats, visible.size())};
+    return {gpu.readBack<std::uint32_t>(keys, visible.size()),
+            gpu.readBack<std::uint32_t>(splats, visible.size())};
 }
 
-TEST_CASE_FIXTURE(Gpu, "cull_pages finds the twin's pages, up to a hair, and leaves none out with a splat that cull keeps") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "cull_pages finds the twin's pages, up to a hair, and leaves none out with a splat that cull keeps") {
     checkPages(*this, 24);
 }
-TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * test::nightly()) { checkPages(*this, 100); }
+TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * test::nightly()) {
+    checkPages(*this, 100);
+}
 
 TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
     std::mt19937 random(3);
-    for (const std::uint32_t count : {1u, 2u, 31u, 32u, 33u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 4096u, 4097u, 40000u}) {
+    for (const std::uint32_t count :
+         {1u, 2u, 31u, 32u, 33u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 4096u, 4097u, 40000u}) {
         CAPTURE(count);
         std::vector<gpu::ScenePage> pages;
         std::vector<std::uint32_t> expected;
         for (std::uint32_t p = 0; p < count; ++p) {
             const bool is_empty = random() % 4 == 0, is_seen = random() % 2 == 0;
             const float z = is_seen ? 2.0f : -2.0f;
-            pages.push_back({.low = {-0.1f, -0.1f, z}, .reach = 0.1f, .high = {0.1f, 0.1f, z + 0.1f}, .count = is_empty ? 0u : 5u});
+            pages.push_back({.low = {-0.1f, -0.1f, z},
+                             .reach = 0.1f,
+                             .high = {0.1f, 0.1f, z + 0.1f},
+                             .count = is_empty ? 0u : 5u});
             if (!is_empty && is_seen) { expected.push_back(p); }
         }
         const Pages::Found found = Pages(*this, pages, gpu::kDiscs, {test::makeEye({64, 64})}).cull(0, 1);
@@ -282,11 +306,15 @@ TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for th
     const std::vector<gpu::ScenePage> pages{
         {.low = glm::vec3(-kHuge), .reach = 1.0f, .high = glm::vec3(kHuge), .count = 1},
         {.low = glm::vec3(kNone), .reach = 1.0f, .high = glm::vec3(kNone), .count = 1},
-        {.low = {-1.0f, -1.0f, -3.0f}, .reach = std::numeric_limits<float>::infinity(), .high = {1.0f, 1.0f, 3.0f}, .count = 1}};
+        {.low = {-1.0f, -1.0f, -3.0f},
+         .reach = std::numeric_limits<float>::infinity(),
+         .high = {1.0f, 1.0f, 3.0f},
+         .count = 1}};
     for (const std::uint32_t shape : {gpu::kDiscs, gpu::kGaussians}) {
         const Kernel without_nan = withoutNan(*this, CullPagesKernel{.splat_kind = shape});
         for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
-            CHECK(Pages(*this, pages, shape, {test::makeEye({64, 64})}, kernel).cull(0, 1).list == std::vector<std::uint32_t>{0, 1, 2});
+            CHECK(Pages(*this, pages, shape, {test::makeEye({64, 64})}, kernel).cull(0, 1).list ==
+                  std::vector<std::uint32_t>{0, 1, 2});
         }
     }
 }
@@ -296,9 +324,11 @@ TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
     const Eye eye = test::makeEye({64, 64});
     for (const bool is_gaussian : {false, true}) {
         CAPTURE(is_gaussian);
-        Scene scene = test::makeScene(std::vector<test::Splat>(6, {{0, 0, 2}, {1, 0, 0, 0}, {0.1f, 0.1f}, 0.9f, glm::vec3(0.5f)}));
+        Scene scene = test::makeScene(
+            std::vector<test::Splat>(6, {{0, 0, 2}, {1, 0, 0, 0}, {0.1f, 0.1f}, 0.9f, glm::vec3(0.5f)}));
         if (is_gaussian) { scene.thicknesses.assign(6, 0.1f); }
-        scene.positions[1].x = scene.positions[2].z = scene.scales[3].y = scene.opacities[4] = scene.rotations[5].x = kNone;
+        scene.positions[1].x = scene.positions[2].z = scene.scales[3].y = scene.opacities[4] =
+            scene.rotations[5].x = kNone;
         const SceneOnDevice device(*this, scene, {eye}, kSettings.near);
         const Kernel without_nan = withoutNan(*this, CullKernel{.splat_kind = device.scene.splatKind()});
         for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
@@ -307,16 +337,21 @@ TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "cull misses no splat that the twin sees, keeps hardly one more, and for two eyes what either sees") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "cull misses no splat that the twin sees, keeps hardly one more, and for two eyes what either sees") {
     for (const auto& [view, twin] : test::stagedScenes()) {
         CAPTURE(view.name);
         Eye other = view.eye;
-        other.world_from_camera.orientation = other.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
+        other.world_from_camera.orientation =
+            other.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
         const SceneOnDevice device(*this, view.scene, {view.eye, other}, kSettings.near);
         const Culled culled = cullOnDevice(*this, device, 0, 1), turned = cullOnDevice(*this, device, 1, 1),
                      both = cullOnDevice(*this, device, 0, 2);
         std::size_t missed = 0, kept = 0;
-        for (const reference::TilePair& pair : twin.pairs) { missed += culled.has(twin.order[pair.splat]) ? 0 : 1; }
+        for (const reference::TilePair& pair : twin.pairs) {
+            missed += culled.has(twin.order[pair.splat]) ? 0 : 1;
+        }
         for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i) ? 1 : 0; }
         CHECK(missed == 0);
         CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
@@ -332,7 +367,9 @@ TEST_CASE_FIXTURE(Gpu, "cull misses no splat that the twin sees, keeps hardly on
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with keys that order as depths or, anywhere, as distances") {
+TEST_CASE_FIXTURE(Gpu,
+                  "compact lists what is visible in the scene's order, with keys that order as depths or, "
+                  "anywhere, as distances") {
     const auto check = [&](const ViewedScene& view, const reference::Settings& settings) {
         const auto visible = reference::cull(view.scene, {&view.eye, 1}, settings);
         const reference::Visible twin = reference::compact(view.scene, visible, view.eye, settings);
@@ -345,8 +382,11 @@ TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with
         for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
             const double depth = settings.order_from ? std::sqrt(twin.depths[i]) : twin.depths[i];
             const double unit =
-                settings.order_from ? depth : test::distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
-            const auto [least, most] = test::depthsOfKey(compacted.keys[i], static_cast<float>(settings.near));
+                settings.order_from
+                    ? depth
+                    : test::distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
+            const auto [least, most] =
+                test::depthsOfKey(compacted.keys[i], static_cast<float>(settings.near));
             worst = std::max(worst, std::max(least - depth, depth - most) / (test::kEpsilon * unit));
         }
         CHECK(worst <= 8.0);  // measured: 2.4

@@ -66,12 +66,18 @@ void addVeil(std::vector<Splat>& splats, float z, float eye_x, int first_px, int
     for (int y = 40; y < 216; y += 6) {
         for (int x = first_px; x < end_px; x += 6) {
             const glm::vec2 offset = px * (glm::vec2(x, y) - 128.0f);
-            splats.push_back({{eye_x + offset.x, offset.y, z}, {1, 0, 0, 0}, glm::vec2(3.0f * px), 0.35f, {0.9f, 0.8f, 0.3f}});
+            splats.push_back({{eye_x + offset.x, offset.y, z},
+                              {1, 0, 0, 0},
+                              glm::vec2(3.0f * px),
+                              0.35f,
+                              {0.9f, 0.8f, 0.3f}});
         }
     }
 }
 
-std::array<Eye, 2> parallelEyes(double eye_distance) { return stereoPair({Pose{}, {222.0, 222.0, 128.0, 128.0}, kSizePx}, eye_distance); }
+std::array<Eye, 2> parallelEyes(double eye_distance) {
+    return stereoPair({Pose{}, {222.0, 222.0, 128.0, 128.0}, kSizePx}, eye_distance);
+}
 
 std::size_t countKind(const AffiliatedFrame& frame, gpu::uint kind) {
     return static_cast<std::size_t>(std::count(frame.tile_kinds.begin(), frame.tile_kinds.end(), kind));
@@ -88,7 +94,8 @@ std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::
 }
 
 // How much the third source of error gains at the same budget.
-void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array<Eye, 2>& eyes, Side dominant, double budget) {
+void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array<Eye, 2>& eyes, Side dominant,
+                    double budget) {
     Scenery scenery(gpu, test::makeScene(splats), eyes, dominant);
     FrameSettings settings = makeSettings(Mode::kPredicted);
     settings.stereo.budget = budget;
@@ -111,34 +118,44 @@ double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
 // Over the right eye's tiles near its gaze.
 double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze& gaze) {
     std::vector<std::uint32_t> near;
-    for (std::size_t t = 0; t < test::tileCount(eye.size_px); ++t) { near.push_back(angleOf(eye, t, gaze) <= gaze.clear_rad ? 1 : 0); }
+    for (std::size_t t = 0; t < test::tileCount(eye.size_px); ++t) {
+        near.push_back(angleOf(eye, t, gaze) <= gaze.clear_rad ? 1 : 0);
+    }
     return compare(test::keepTiles(made, near), test::keepTiles(full, near)).psnrDb();
 }
 
-bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_kinds[tile] == gpu::kTilePredicted; }
+bool isChosen(const AffiliatedFrame& made, std::size_t tile) {
+    return made.tile_kinds[tile] == gpu::kTilePredicted;
+}
 
-TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its near plane are found without a hole to show them") {
+TEST_CASE_FIXTURE(Gpu,
+                  "splats beyond the dominant eye's border and behind its near plane are found without a "
+                  "hole to show them") {
     // A veil at 0.25 in front of eyes 0.064 apart has a disparity of 57 px: what one eye sees in columns 210
     // to 238, the other has beyond 256.
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
         std::vector<Splat> splats;
         addWall(splats, 8.0f, 5.6f, 0.07f);
-        addVeil(splats, 0.25f, dominant == kLeft ? 0.032f : -0.032f, dominant == kLeft ? 214 : 18, dominant == kLeft ? 239 : 43);
+        addVeil(splats, 0.25f, dominant == kLeft ? 0.032f : -0.032f, dominant == kLeft ? 214 : 18,
+                dominant == kLeft ? 239 : 43);
         checkNewcomers(*this, splats, parallelEyes(0.064), dominant, 0.15);
     }
     // The axes are turned outwards, so what is right of the middle is nearer for the left eye. A sixth of the
     // right eye's picture lies beyond the left one's border as well, and is rendered again first.
     std::array<Eye, 2> eyes = parallelEyes(0.064);
     for (int e = 0; e < 2; ++e) {
-        eyes[e].world_from_camera.orientation = glm::angleAxis(glm::radians(e == kLeft ? -4.0 : 4.0), glm::dvec3(0, 1, 0));
+        eyes[e].world_from_camera.orientation =
+            glm::angleAxis(glm::radians(e == kLeft ? -4.0 : 4.0), glm::dvec3(0, 1, 0));
     }
     const auto depthFor = [&](int e, const Splat& splat) {
         return transform(inverse(eyes[e].world_from_camera), glm::dvec3(splat.position)).z;
     };
     std::vector<Splat> splats;
     addVeil(splats, 0.2015f, 0.0f, 168, 201);
-    std::erase_if(splats, [&](const Splat& splat) { return depthFor(kLeft, splat) > 0.199 || depthFor(kRight, splat) < 0.201; });
+    std::erase_if(splats, [&](const Splat& splat) {
+        return depthFor(kLeft, splat) > 0.199 || depthFor(kRight, splat) < 0.201;
+    });
     REQUIRE(splats.size() > 50);
     addWall(splats, 8.0f, 8.4f, 0.07f);
     checkNewcomers(*this, splats, eyes, kLeft, 0.4);
@@ -150,8 +167,9 @@ TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its n
     CHECK(countOf(both.render(Mode::kPredicted).made.result, "splats_newcomers") == 0);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a near edge uncovers holes beside it; centre ROIs leave none, and every patch brings the picture nearer to the full render") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a near edge uncovers holes beside it; centre ROIs leave none, and every patch brings the "
+                  "picture nearer to the full render") {
     // A screen at depth 1 ends at x = -0.05, in front of a wall at depth 4; for eyes 0.12 apart the
     // disparities are 26.6 px and 6.7 px.
     std::vector<Splat> splats;
@@ -165,8 +183,8 @@ TEST_CASE_FIXTURE(
     for (const bool bars : {false, true}) {
         for (const Side dominant : {kLeft, kRight}) {
             INFO("bars ", bars, ", dominant ", static_cast<int>(dominant));
-            Scenery scenery(*this, bars ? fence.scene : test::makeScene(splats), bars ? stereoPair(fence.eye, 0.12) : parallelEyes(0.12),
-                            dominant);
+            Scenery scenery(*this, bars ? fence.scene : test::makeScene(splats),
+                            bars ? stereoPair(fence.eye, 0.12) : parallelEyes(0.12), dominant);
             const Outcome filled = scenery.render(Mode::kReproject);
             FrameSettings settings = makeSettings(Mode::kPaper);
             settings.stereo.margin_px = 0;
@@ -185,7 +203,8 @@ TEST_CASE_FIXTURE(
             }
             // Where the affiliated eye sees the edge from behind which the far wall appears: the right edge
             // for the right eye, the left edge for the left one.
-            const double edge_px = dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
+            const double edge_px =
+                dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
             std::size_t beside = 0, elsewhere = 0;
             for (std::size_t i = 0; i < filled.made.pixel_classes.size(); ++i) {
                 const double x = static_cast<double>(i % 256) + 0.5;
@@ -221,11 +240,15 @@ TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
     const auto view = test::viewBuiltin("builtin:atelier", kSizePx, 20000);
     const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.064);
     std::array<Eye, 2> outside = eyes;
-    for (Eye& eye : outside) { eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(0, 0, 1000); }
+    for (Eye& eye : outside) {
+        eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(0, 0, 1000);
+    }
     const GpuScene scene(context(), view.scene);
     test::KeptFrame frame(context(), scene), plain(context(), scene);
     const auto render = [&](const std::array<Eye, 2>& of, double budget = 0.22) {
@@ -234,7 +257,8 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
         return makeAffiliated(frame, of, settings);
     };
     const auto reprojects = [](const AffiliatedFrame& made) {
-        return std::ranges::any_of(made.result.gpu_ms, [](const auto& pass) { return pass.label.text() == "affiliated resample"; });
+        return std::ranges::any_of(
+            made.result.gpu_ms, [](const auto& pass) { return pass.label.text() == "affiliated resample"; });
     };
     const auto isWhole = [&](const AffiliatedFrame& made, const std::array<Eye, 2>& of) {
         const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));
@@ -261,8 +285,9 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     CHECK(reprojects(render(eyes, 0.1)));
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "where it is known where the eye looks fewer tiles are rendered again, none less about that place, and it is as good there") {
+TEST_CASE_FIXTURE(Gpu,
+                  "where it is known where the eye looks fewer tiles are rendered again, none less about "
+                  "that place, and it is as good there") {
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
         const auto view = test::viewBuiltin("builtin:atelier", {384, 320}, 40000);
         const auto eyes = test::headsetEyes(view.eye, canting_rad);

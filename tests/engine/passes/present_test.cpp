@@ -29,12 +29,16 @@ struct Presented {
 };
 
 Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation& how = {}) {
-    const Buffer colours = shown.halves ? gpu.upload("colours", packHalves(shown.colours)) : gpu.upload("colours", shown.colours),
+    const Buffer colours = shown.halves ? gpu.upload("colours", packHalves(shown.colours))
+                                        : gpu.upload("colours", shown.colours),
                  sums = gpu.upload("depth sums", shown.depth_sums), words = gpu.upload("words", shown.words),
-                 kinds = gpu.upload("kinds", shown.tile_kinds), classes = gpu.upload("classes", shown.pixel_classes);
+                 kinds = gpu.upload("kinds", shown.tile_kinds),
+                 classes = gpu.upload("classes", shown.pixel_classes);
     const std::size_t count = shown.colours.size();
-    const Buffer pixels = shown.behind.empty() ? gpu.allocate<std::uint32_t>("pixels", count) : gpu.upload("pixels", shown.behind),
-                 depths = shown.mesh_depths.empty() ? gpu.allocate<float>("depths", count) : gpu.upload("depths", shown.mesh_depths);
+    const Buffer pixels = shown.behind.empty() ? gpu.allocate<std::uint32_t>("pixels", count)
+                                               : gpu.upload("pixels", shown.behind),
+                 depths = shown.mesh_depths.empty() ? gpu.allocate<float>("depths", count)
+                                                    : gpu.upload("depths", shown.mesh_depths);
     const bool with_depth = !shown.words.empty() || !shown.depth_sums.empty();
     gpu::PresentPass pass{};
     pass.colours = colours.address<gpu::vec4>();
@@ -56,7 +60,9 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
     pass.see_through = how.see_through ? 1 : 0;
     pass.kept_bits = shown.kept_bits;
     const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = shown.halves});
-    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (shown.size_px.x + 15) / 16, (shown.size_px.y + 7) / 8); });
+    gpu.run([&](Commands& commands) {
+        commands.dispatch(kernel, pass, (shown.size_px.x + 15) / 16, (shown.size_px.y + 7) / 8);
+    });
     return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
 }
 
@@ -65,8 +71,8 @@ Colours makeColours(glm::uvec2 size_px) {
     Colours colours;
     for (std::uint32_t i = 0; i < size_px.x * size_px.y; ++i) {
         const auto at = static_cast<float>(i);
-        colours.emplace_back(0.6f + 0.8f * std::sin(at), 0.5f + 0.4f * std::sin(0.37f * at), 0.5f + 0.6f * std::cos(0.11f * at),
-                             0.5f + 0.5f * std::sin(0.05f * at));
+        colours.emplace_back(0.6f + 0.8f * std::sin(at), 0.5f + 0.4f * std::sin(0.37f * at),
+                             0.5f + 0.6f * std::cos(0.11f * at), 0.5f + 0.5f * std::sin(0.05f * at));
     }
     return unpackHalves(packHalves(colours));
 }
@@ -76,7 +82,8 @@ std::size_t countOff(std::span<const std::uint32_t> actual, const Bytes& expecte
     std::size_t off = 0;
     for (std::size_t i = 0; i < actual.size(); ++i) {
         for (int shift = 0; shift < 32; shift += 8) {
-            const int a = static_cast<int>((actual[i] >> shift) & 255), b = static_cast<int>((expected[i] >> shift) & 255);
+            const int a = static_cast<int>((actual[i] >> shift) & 255),
+                      b = static_cast<int>((expected[i] >> shift) & 255);
             off += std::abs(a - b) > tolerance ? 1 : 0;
         }
     }
@@ -85,14 +92,18 @@ std::size_t countOff(std::span<const std::uint32_t> actual, const Bytes& expecte
 
 std::vector<glm::dvec4> asDoubles(const Colours& colours) { return {colours.begin(), colours.end()}; }
 
-TEST_CASE_FIXTURE(Gpu, "pictures of floats or half floats become the bytes of their twin, at every order of channels and encoding") {
-    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(100, 70)}) {
+TEST_CASE_FIXTURE(Gpu,
+                  "pictures of floats or half floats become the bytes of their twin, at every order of "
+                  "channels and encoding") {
+    for (const glm::uvec2 size_px :
+         {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(100, 70)}) {
         Shown shown{size_px, makeColours(size_px)};
         for (int choice = 0; choice < 8; ++choice) {
             INFO("size ", size_px.x, ", choice ", choice);
             const reference::Presentation how{(choice & 1) != 0, (choice & 2) != 0, 0.2, (choice & 4) != 0};
             shown.halves = false;
-            const Bytes actual = runPresent(*this, shown, how).pixels, expected = reference::present(asDoubles(shown.colours), how);
+            const Bytes actual = runPresent(*this, shown, how).pixels,
+                        expected = reference::present(asDoubles(shown.colours), how);
             CHECK(countOff(actual, expected, 1) == 0);
             CHECK(countOff(actual, expected, 0) <= 1 + expected.size() / 500);
             shown.halves = true;
@@ -109,24 +120,29 @@ TEST_CASE_FIXTURE(Gpu, "of a picture over another's words only the bits that are
     reference::keepBits(expected, shown.behind, shown.kept_bits);
     const Bytes actual = runPresent(*this, shown).pixels;
     CHECK(countOff(actual, expected, 1) == 0);
-    for (std::size_t i = 0; i < actual.size(); ++i) { CHECK(((actual[i] ^ shown.behind[i]) & shown.kept_bits) == 0); }
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+        CHECK(((actual[i] ^ shown.behind[i]) & shown.kept_bits) == 0);
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that no lens shows") {
     const glm::uvec2 size_px(3 * gpu::kTileSize, gpu::kTileSize);
     static_assert(gpu::kHole == 2);
-    const Bytes shown = runPresent(*this, {.size_px = size_px,
-                                           .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)),
-                                           .tile_kinds = {gpu::kTileHidden, gpu::kTileEdge, 0},
-                                           // All are holes.
-                                           .pixel_classes = std::vector<gpu::uint>(3 * gpu::kTileSize, 0xaaaaaaaa)})
-                            .pixels;
+    const Bytes shown =
+        runPresent(*this, {.size_px = size_px,
+                           .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)),
+                           .tile_kinds = {gpu::kTileHidden, gpu::kTileEdge, 0},
+                           // All are holes.
+                           .pixel_classes = std::vector<gpu::uint>(3 * gpu::kTileSize, 0xaaaaaaaa)})
+            .pixels;
     CHECK(shown[0] == 0xff000000);
     CHECK(shown[gpu::kTileSize] == 0xff662400);      // 0.4 of 0, 0.35, 1
     CHECK(shown[2 * gpu::kTileSize] == 0xff000066);  // 0.4 of red
 }
 
-TEST_CASE_FIXTURE(Gpu, "red comes first, or with blue first third; what is seen through has its light times its alpha; NaN is no colour") {
+TEST_CASE_FIXTURE(Gpu,
+                  "red comes first, or with blue first third; what is seen through has its light times its "
+                  "alpha; NaN is no colour") {
     const auto present = [&](const Colours& colours, const reference::Presentation& how) {
         Bytes pixels = runPresent(*this, {{colours.size(), 1}, colours}, how).pixels;
         CHECK(pixels == reference::present(asDoubles(colours), how));
@@ -139,42 +155,55 @@ TEST_CASE_FIXTURE(Gpu, "red comes first, or with blue first third; what is seen 
     // White at half alpha, encoded: half of its light is byte 188. Then a quarter of red; nothing; more than
     // full.
     const reference::Presentation through{false, false, 0.2, true};
-    Bytes seen = present({{0.5f, 0.5f, 0.5f, 0.5f}, {0.25f, 0, 0, 0.25f}, {0.3f, 0.3f, 0.3f, 0}, {1, 0.5f, 0, 2}}, through);
+    Bytes seen = present(
+        {{0.5f, 0.5f, 0.5f, 0.5f}, {0.25f, 0, 0, 0.25f}, {0.3f, 0.3f, 0.3f, 0}, {1, 0.5f, 0, 2}}, through);
     CHECK((seen.back() >> 24) == 255u);
     seen.pop_back();
     CHECK(seen == Bytes{0x80bcbcbcu, 0x40000089u, 0});
     // Opaque colours have the same bytes as without.
     CHECK(present({{1.0f, 0.5f, 0.2f, 1.0f}}, through) == present({{1.0f, 0.5f, 0.2f, 1.0f}}, {}));
-    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
-    CHECK(present({{nan, nan, nan, nan}, {infinity, -infinity, nan, 1}, {-1, 2, -0.0f, 1}, {1e38f, -1e38f, 1, 0}}, {false, false, 0.2}) ==
-          Bytes{0xff000000u, 0xff0000ffu, 0xff00ff00u, 0xffff00ffu});
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+    CHECK(present(
+              {{nan, nan, nan, nan}, {infinity, -infinity, nan, 1}, {-1, 2, -0.0f, 1}, {1e38f, -1e38f, 1, 0}},
+              {false, false, 0.2}) == Bytes{0xff000000u, 0xff0000ffu, 0xff00ff00u, 0xffff00ffu});
 }
 
-TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far, whether it is a sum or in the words of a history") {
+TEST_CASE_FIXTURE(Gpu,
+                  "depth is near over depth, and nothing is infinitely far, whether it is a sum or in the "
+                  "words of a history") {
     // Alpha 0.5 at depth 4, alpha 1 at the near plane and in front of it, nothing, almost nothing, alpha
     // without depth.
-    const Shown summed{.size_px = {6, 1},
-                       .colours = {{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 0, 0.001f}, {0, 0, 0, 0.5f}},
-                       .depth_sums = {2.0f, 0.25f, 0.1f, 0.0f, 0.001f, std::numeric_limits<float>::quiet_NaN()}};
+    const Shown summed{
+        .size_px = {6, 1},
+        .colours =
+            {{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 0, 0.001f}, {0, 0, 0, 0.5f}},
+        .depth_sums = {2.0f, 0.25f, 0.1f, 0.0f, 0.001f, std::numeric_limits<float>::quiet_NaN()}};
     // Depth 4 and, to 19 bits, 3; in front of the near plane; infinitely far; a pixel that moves nowhere;
     // almost nothing.
-    const Shown moving{.size_px = {6, 1},
-                       .colours = {{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 0.001f}},
-                       .words = {packMoving(0.25, true, 3), packMoving(1.0 / 3.0, true, 31), packMoving(9.0, true, 0),
-                                 packMoving(0.0, true, 0), 0, packMoving(0.25, true, 0)}};
+    const Shown moving{
+        .size_px = {6, 1},
+        .colours =
+            {{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 0.001f}},
+        .words = {packMoving(0.25, true, 3), packMoving(1.0 / 3.0, true, 31), packMoving(9.0, true, 0),
+                  packMoving(0.0, true, 0), 0, packMoving(0.25, true, 0)}};
     for (const Shown* shown : {&summed, &moving}) {
         reference::Presentation how{false, false, 0.25};
         how.by_inverse = shown == &moving;
         std::vector<double> sums(shown->depth_sums.begin(), shown->depth_sums.end());
         for (std::size_t i = 0; i < shown->words.size(); ++i) {
-            sums.push_back(static_cast<double>(shown->colours[i].a) / unpackArrival(shown->words[i]).inverse_depth);
+            sums.push_back(static_cast<double>(shown->colours[i].a) /
+                           unpackArrival(shown->words[i]).inverse_depth);
         }
-        const std::vector<double> expected = reference::presentDepths(asDoubles(shown->colours), sums, shown->size_px.x, how);
+        const std::vector<double> expected =
+            reference::presentDepths(asDoubles(shown->colours), sums, shown->size_px.x, how);
         if (shown == &summed) { CHECK(expected == std::vector<double>{0.0625, 1.0, 1.0, 0.0, 0.0, 0.0}); }
         CHECK(expected[0] == 0.0625);
         CHECK(expected[2] == 1.0);
         const Presented presented = runPresent(*this, *shown, how);
-        for (std::size_t i = 0; i < sums.size(); ++i) { CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6)); }
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6));
+        }
     }
 }
 
@@ -188,7 +217,8 @@ struct Silhouette {
             front.push_back(1.0 / 2.0);
             back.push_back(1.0 / 7.0 + 0.0004 * at.x - 0.0003 * at.y);
             share.push_back(std::clamp(0.5 - beyond_px / std::max(soft_px, 1e-9), 0.0, 1.0));
-            const double mean_inverse = glm::mix(back[i], front[i], share[i]), mean = glm::mix(1.0 / back[i], 1.0 / front[i], share[i]);
+            const double mean_inverse = glm::mix(back[i], front[i], share[i]),
+                         mean = glm::mix(1.0 / back[i], 1.0 / front[i], share[i]);
             shown.colours.emplace_back(0.0f, 0.0f, 0.0f, 1.0f);
             if (by_words) {
                 shown.words.push_back(packMoving(mean_inverse, true, 0));
@@ -205,7 +235,8 @@ struct Silhouette {
 };
 
 TEST_CASE_FIXTURE(Gpu,
-                  "the depth at a silhouette is that of one of both surfaces, the one that makes up half of the pixel, and never between") {
+                  "the depth at a silhouette is that of one of both surfaces, the one that makes up half of "
+                  "the pixel, and never between") {
     for (const bool by_words : {false, true}) {
         for (const double soft_px : {0.0, 1.0, 2.5, 4.0, 8.0}) {
             CAPTURE(by_words);
@@ -213,8 +244,8 @@ TEST_CASE_FIXTURE(Gpu,
             const Silhouette silhouette(soft_px, by_words);
             reference::Presentation how{false, false, 0.25};
             how.by_inverse = by_words;
-            const std::vector<double> expected =
-                reference::presentDepths(asDoubles(silhouette.shown.colours), silhouette.sums, Silhouette::kSizePx.x, how);
+            const std::vector<double> expected = reference::presentDepths(
+                asDoubles(silhouette.shown.colours), silhouette.sums, Silhouette::kSizePx.x, how);
             const Presented presented = runPresent(*this, silhouette.shown, how);
             std::size_t mixed = 0;
             for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -232,23 +263,30 @@ TEST_CASE_FIXTURE(Gpu,
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "a surface that is seen at a low angle, and what is thinner than a silhouette is soft, keep the depth that they have") {
+                  "a surface that is seen at a low angle, and what is thinner than a silhouette is soft, "
+                  "keep the depth that they have") {
     const glm::uvec2 size_px(40, 30);
-    Shown shown{.size_px = size_px, .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f))};
+    Shown shown{.size_px = size_px,
+                .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f))};
     for (std::uint32_t i = 0; i < size_px.x * size_px.y; ++i) {
         const double row = i / size_px.x, column = i % size_px.x;
         // A floor up to its horizon; or a pole that blurs over three pixels and never covers one.
         shown.words.push_back(
-            packMoving(row > 15.0 ? 0.01 * (row - 15.0) : 0.05 + 0.2 * std::max(0.0, 0.6 - 0.3 * std::abs(column - 20.0)), true, 0));
+            packMoving(row > 15.0 ? 0.01 * (row - 15.0)
+                                  : 0.05 + 0.2 * std::max(0.0, 0.6 - 0.3 * std::abs(column - 20.0)),
+                       true, 0));
     }
     const Presented presented = runPresent(*this, shown, {false, false, 0.25});
     for (std::size_t i = 0; i < shown.words.size(); ++i) {
         if (i / size_px.x == 15 || i / size_px.x == 16) { continue; }  // between both
-        CHECK(presented.depths[i] == doctest::Approx(0.25 * unpackArrival(shown.words[i]).inverse_depth).epsilon(1e-6));
+        CHECK(presented.depths[i] ==
+              doctest::Approx(0.25 * unpackArrival(shown.words[i]).inverse_depth).epsilon(1e-6));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, in any order, before or behind its depths, as its twin's does") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a picture lies over a program's own bytes, in any order, before or behind its depths, as "
+                  "its twin's does") {
     Shown shown{{64, 4}, makeColours({64, 4})};
     std::vector<double> sums, meshes;
     for (std::uint32_t i = 0; i < 256; ++i) {
@@ -260,11 +298,14 @@ TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, in any order,
         shown.mesh_depths.push_back(static_cast<float>(meshes.back()));
     }
     for (int choice = 0; choice < 8; ++choice) {
-        const reference::Presentation how{(choice & 1) != 0, (choice & 2) != 0, 0.25, false, 0.125, (choice & 4) != 0};
-        const Bytes expected = reference::presentOver(asDoubles(shown.colours), sums, shown.behind, meshes, how);
+        const reference::Presentation how{(choice & 1) != 0, (choice & 2) != 0, 0.25, false, 0.125,
+                                          (choice & 4) != 0};
+        const Bytes expected =
+            reference::presentOver(asDoubles(shown.colours), sums, shown.behind, meshes, how);
         const Presented presented = runPresent(*this, shown, how);
         CHECK(countOff(presented.pixels, expected, 1) == 0);
-        const std::vector<double> own = reference::presentDepths(asDoubles(shown.colours), sums, shown.size_px.x, how);
+        const std::vector<double> own =
+            reference::presentDepths(asDoubles(shown.colours), sums, shown.size_px.x, how);
         for (std::size_t i = 0; i < own.size(); ++i) {
             const bool is_splats = (how.is_cut || own[i] > meshes[i]) && shown.colours[i].a >= 0.5f;
             CHECK(presented.depths[i] == doctest::Approx(is_splats ? own[i] : meshes[i]).epsilon(1e-6));
@@ -272,7 +313,8 @@ TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, in any order,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom, and images of other formats are refused") {
+TEST_CASE_FIXTURE(Gpu,
+                  "the bytes reach an image, rows top to bottom, and images of other formats are refused") {
     const glm::uvec2 size_px(5, 3);
     const DeviceImage image(context(), size_px);
     const Colours colours = makeColours(size_px);
@@ -284,24 +326,31 @@ TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom, and images
         image.copyLevel(commands, 0, size_px, readback, 0);
     });
     CHECK(countOff(readback.mapped<std::uint32_t>(), reference::present(asDoubles(colours), {}), 1) == 0);
-    CHECK_THROWS_WITH(Presenter(context(), vk::Format::eR16G16B16A16Sfloat), doctest::Contains("8-bit RGBA or BGRA"));
+    CHECK_THROWS_WITH(Presenter(context(), vk::Format::eR16G16B16A16Sfloat),
+                      doctest::Contains("8-bit RGBA or BGRA"));
 }
 
-TEST_CASE_FIXTURE(Gpu, "a window shows what a view with other axes sees of it, and the same bytes where these are its own") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "a window shows what a view with other axes sees of it, and the same bytes where these are its own") {
     const glm::uvec2 size_px(21, 13), view_px(10, 7);
     const Colours colours = makeColours(size_px);
     const Picture eye{.colours = upload("colours", colours), .depths = {}};
     const Bytes shown = reference::present(asDoubles(colours), {});
     const DeviceImage image(context(), size_px);
     Presenter presenter(context(), DeviceImage::kFormat);
-    const glm::dmat3 within(1, 0, 0, 0, 1, 0, 5, 3, 1), turned(0.9, -0.2, 0.004, 0.3, 1.1, -0.006, 3.3, 2.7, 1.0);
+    const glm::dmat3 within(1, 0, 0, 0, 1, 0, 5, 3, 1),
+        turned(0.9, -0.2, 0.004, 0.3, 1.1, -0.006, 3.3, 2.7, 1.0);
     for (const glm::dmat3& picture_from_view : {within, turned}) {
-        const Buffer readback(context(), "read-back", sizeof(std::uint32_t) * view_px.x * view_px.y, MemoryKind::kReadback);
+        const Buffer readback(context(), "read-back", sizeof(std::uint32_t) * view_px.x * view_px.y,
+                              MemoryKind::kReadback);
         run([&](Commands& commands) {
             presenter.record(commands, {&eye, size_px, nullptr, *image.image, {}}, 0.2);
-            commands.copy(presenter.turn(commands, size_px, view_px, picture_from_view), readback, readback.bytes());
+            commands.copy(presenter.turn(commands, size_px, view_px, picture_from_view), readback,
+                          readback.bytes());
         });
-        CHECK(countOff(readback.mapped<std::uint32_t>(), reference::turn(shown, size_px, view_px, picture_from_view, false),
+        CHECK(countOff(readback.mapped<std::uint32_t>(),
+                       reference::turn(shown, size_px, view_px, picture_from_view, false),
                        picture_from_view == within ? 0 : 1) == 0);
     }
 }

@@ -15,18 +15,22 @@ struct FieldErrors {
     std::size_t other_kind = 0, edge_on = 0;
 
     void note(const std::string& field, double error, double unit) {
-        worst[field] = std::max(worst[field], std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error) / unit);
+        worst[field] = std::max(worst[field], std::isnan(error) ? std::numeric_limits<double>::infinity()
+                                                                : std::abs(error) / unit);
     }
 
-    void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i) {
+    void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth,
+              const ViewedScene& view, std::uint32_t i) {
         const test::OpacityColour packed = test::unpack(splat);
         if (packed.has_reference != truth.low_pass) {
             ++other_kind;
             return;
         }
         noteColour(packed, truth, view.scene, i);
-        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
-        const glm::dvec3 position(view.scene.positions[i]), from_eye = position - view.eye.world_from_camera.position;
+        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy),
+            principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
+        const glm::dvec3 position(view.scene.positions[i]),
+            from_eye = position - view.eye.world_from_camera.position;
         // Rounding of the centre in camera space.
         const double rounding = test::kEpsilon * test::distanceToRound(position, view.eye);
         const double z = truth.depth;
@@ -35,8 +39,10 @@ struct FieldErrors {
             for (int axis = 0; axis < 2; ++axis) {
                 // A position's own rounding, if it lies far from the scene's origin, and 2^-7 of the two
                 // floats' rounding.
-                const double coarse = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + test::kEpsilon * principal[axis];
-                note("reference_px", test::referenceOf(splat)[axis] - truth.reference_px[axis], coarse / 128.0);
+                const double coarse = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z +
+                                      test::kEpsilon * principal[axis];
+                note("reference_px", test::referenceOf(splat)[axis] - truth.reference_px[axis],
+                     coarse / 128.0);
             }
             note("1/z", static_cast<double>(splat.inverse_depth) * z - 1.0, rounding / z);
         }
@@ -53,7 +59,8 @@ struct FieldErrors {
         const glm::quat& q = view.scene.rotations[i];
         const double delta = std::abs(glm::dot(glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z))[2], from_eye));
         const double scale = static_cast<double>(std::min(view.scene.scales[i].x, view.scene.scales[i].y));
-        const double row = rounding / delta * test::distanceToRound(position, view.eye) / (scale * delta * std::min(focal.x, focal.y));
+        const double row = rounding / delta * test::distanceToRound(position, view.eye) /
+                           (scale * delta * std::min(focal.x, focal.y));
         const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
         note("A", plane_error.x, row);
         note("B", plane_error.y, row);
@@ -65,19 +72,23 @@ struct FieldErrors {
         if (!truth.low_pass) {
             const double size = std::max(view.eye.size_px.x, view.eye.size_px.y);
             for (int axis = 0; axis < 2; ++axis) {
-                note("offset", static_cast<double>(splat.reference_px[axis]) - truth.plane_offset[axis], row * size);
+                note("offset", static_cast<double>(splat.reference_px[axis]) - truth.plane_offset[axis],
+                     row * size);
             }
-            note("1/z", static_cast<double>(splat.inverse_depth) - truth.inverse_depth, 3.0 * rounding / (delta * delta));
+            note("1/z", static_cast<double>(splat.inverse_depth) - truth.inverse_depth,
+                 3.0 * rounding / (delta * delta));
         }
     }
 
 private:
     // For the axes on the screen, in pixels, the rounding of the line of sight is relative to the longest
     // one; the low-pass is half a pixel.
-    void noteGaussian(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i,
-                      double rounding) {
-        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), sigma_px = truth.reach_px / std::sqrt(truth.cut);
-        const double longest_px = std::max(view.scene.scales[i].x, view.scene.scales[i].y) * std::max(focal.x, focal.y) / truth.depth;
+    void noteGaussian(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth,
+                      const ViewedScene& view, std::uint32_t i, double rounding) {
+        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy),
+            sigma_px = truth.reach_px / std::sqrt(truth.cut);
+        const double longest_px = std::max(view.scene.scales[i].x, view.scene.scales[i].y) *
+                                  std::max(focal.x, focal.y) / truth.depth;
         const double unit = rounding * (1.0 + longest_px / std::sqrt(0.3));
         const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
         note("Gaussian A", plane_error.x, unit * truth.plane_from_pixel.x);
@@ -88,12 +99,14 @@ private:
         const double climb = std::max(view.scene.scales[i].x, view.scene.scales[i].y) / truth.depth;
         for (int axis = 0; axis < 2; ++axis) {
             const double error = static_cast<double>(splat.perspective[axis]) - truth.perspective[axis];
-            note("Gaussian perspective", error * sigma_px[axis] * truth.depth, unit * climb * (1.0 + longest_px / std::sqrt(0.3)));
+            note("Gaussian perspective", error * sigma_px[axis] * truth.depth,
+                 unit * climb * (1.0 + longest_px / std::sqrt(0.3)));
         }
         note("dimmed opacity", test::unpack(splat).opacity / truth.opacity - 1.0, 1.1e-5 + unit);
     }
 
-    void noteColour(const test::OpacityColour& packed, const reference::ProjectedSplat& truth, const Scene& scene, std::uint32_t i) {
+    void noteColour(const test::OpacityColour& packed, const reference::ProjectedSplat& truth,
+                    const Scene& scene, std::uint32_t i) {
         // Half a step of 2^-15 in -log2(opacity) is 1.06e-5 of the opacity.
         if (!truth.gaussian) { note("opacity", packed.opacity / truth.opacity - 1.0, 1.1e-5); }
         // Half floats are off by up to 2^-11 of their value, in each coefficient and in the colour. No
@@ -109,20 +122,26 @@ private:
     }
 };
 
-bool inOrder(const TilePair& a, const TilePair& b) { return a.splat != b.splat ? a.splat < b.splat : a.tile < b.tile; }
+bool inOrder(const TilePair& a, const TilePair& b) {
+    return a.splat != b.splat ? a.splat < b.splat : a.tile < b.tile;
+}
 
 // project and bin from the twin's order: the pairs as bin writes them, or only those in the tiles of a mask,
 // if there is one.
-std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinStages& twin, const std::vector<gpu::uint>& mask = {}) {
+std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinStages& twin,
+                                  const std::vector<gpu::uint>& mask = {}) {
     const SceneOnDevice device(gpu, view.scene, {view.eye}, kSettings.near);
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const Kernel& kernel = gpu.kernel(BinKernel{});
     const Kernel& large_kernel = gpu.kernel(BinLargeKernel{.splat_kind = device.scene.splatKind()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
-    const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
-    const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);
-    const Buffer large = gpu.allocate<gpu::uint>("large splats", capacity), begins = gpu.allocate<gpu::uint>("large begins", capacity);
+    const test::ProjectedOnDevice projected =
+        test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
+    const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity),
+                 ranks = gpu.allocate<gpu::uint>("ranks", capacity);
+    const Buffer large = gpu.allocate<gpu::uint>("large splats", capacity),
+                 begins = gpu.allocate<gpu::uint>("large begins", capacity);
     gpu::BinPass pass{};
     pass.eyes = device.eyeViews();
     pass.splats = projected.splats.address<gpu::ProjectedSplat>();
@@ -142,7 +161,8 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
         commands.dispatch(large_kernel, pass, gpu::kBinLargeGroups);
     });
     const std::uint32_t count = gpu.readBack<gpu::ListState>(projected.pairs, 1)[0].count;
-    const auto tile_values = gpu.readBack<gpu::uint>(tiles, count), rank_values = gpu.readBack<gpu::uint>(ranks, count);
+    const auto tile_values = gpu.readBack<gpu::uint>(tiles, count),
+               rank_values = gpu.readBack<gpu::uint>(ranks, count);
     std::vector<TilePair> result(count);
     for (std::size_t i = 0; i < count; ++i) { result[i] = {tile_values[i], rank_values[i]}; }
     return result;
@@ -156,7 +176,10 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
     for (std::uint32_t i = 0; i < 256; ++i) {
         const glm::uvec2 pixel(tile % columns * 16 + i % 16, tile / columns * 16 + i / 16);
         reference::Hit hit;
-        if (pixel.x >= size_px.x || pixel.y >= size_px.y || !reference::meet(plane, glm::dvec2(pixel) + 0.5, hit)) { continue; }
+        if (pixel.x >= size_px.x || pixel.y >= size_px.y ||
+            !reference::meet(plane, glm::dvec2(pixel) + 0.5, hit)) {
+            continue;
+        }
         greatest = std::max(greatest, splat.opacity * std::exp(-0.5 * hit.rho));
     }
     return greatest;
@@ -165,10 +188,20 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
 TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times the condition of each") {
     // Measured, in roundings: reference 1.3, A and B 19, D 11 (16.1 on an NVIDIA H100), perspective 5, 1/z
     // 3.1, offset 0.7, Gaussians 2.
-    const std::map<std::string, double> bounds{
-        {"opacity", 1.0},    {"colour", 1.0},     {"reference_px", 4.0},         {"1/z", 8.0},           {"A", 32.0},
-        {"B", 32.0},         {"D", 24.0},         {"perspective", 16.0},         {"offset", 2.0},        {"Gaussian A", 4.0},
-        {"Gaussian B", 4.0}, {"Gaussian D", 4.0}, {"Gaussian perspective", 2.0}, {"dimmed opacity", 4.0}};
+    const std::map<std::string, double> bounds{{"opacity", 1.0},
+                                               {"colour", 1.0},
+                                               {"reference_px", 4.0},
+                                               {"1/z", 8.0},
+                                               {"A", 32.0},
+                                               {"B", 32.0},
+                                               {"D", 24.0},
+                                               {"perspective", 16.0},
+                                               {"offset", 2.0},
+                                               {"Gaussian A", 4.0},
+                                               {"Gaussian B", 4.0},
+                                               {"Gaussian D", 4.0},
+                                               {"Gaussian perspective", 2.0},
+                                               {"dimmed opacity", 4.0}};
     for (const auto& [view, twin] : test::stagedScenes()) {
         CAPTURE(view.name);
         const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
@@ -197,13 +230,15 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
         CAPTURE(view.name);
         const std::vector<TilePair> pairs = binOnDevice(*this, view, twin);
         // Each once, in depth order, with ascending tiles within a splat; none in no tile.
-        CHECK(std::adjacent_find(pairs.begin(), pairs.end(), [](const TilePair& a, const TilePair& b) { return !inOrder(a, b); }) ==
-              pairs.end());
-        const bool all_in_tiles =
-            std::all_of(pairs.begin(), pairs.end(), [&](const TilePair& pair) { return pair.tile < twin.ranges.size(); });
+        CHECK(std::adjacent_find(pairs.begin(), pairs.end(), [](const TilePair& a, const TilePair& b) {
+                  return !inOrder(a, b);
+              }) == pairs.end());
+        const bool all_in_tiles = std::all_of(
+            pairs.begin(), pairs.end(), [&](const TilePair& pair) { return pair.tile < twin.ranges.size(); });
         CHECK(all_in_tiles);
         std::vector<TilePair> missing;
-        std::set_difference(twin.pairs.begin(), twin.pairs.end(), pairs.begin(), pairs.end(), std::back_inserter(missing), inOrder);
+        std::set_difference(twin.pairs.begin(), twin.pairs.end(), pairs.begin(), pairs.end(),
+                            std::back_inserter(missing), inOrder);
         // A pair may be missing only if all its pixels are within rounding of the cut.
         CHECK(static_cast<double>(missing.size()) <= 1e-5 * static_cast<double>(twin.pairs.size()));
         for (const TilePair& pair : missing) {
@@ -211,26 +246,32 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
         }
         // Discs that reach the eye's plane get every tile of their box, and the cloud is full of them
         // (measured: 1.72).
-        CHECK(static_cast<double>(pairs.size()) <= (view.name == "cloud" ? 2.0 : 1.05) * static_cast<double>(twin.pairs.size()));
+        CHECK(static_cast<double>(pairs.size()) <=
+              (view.name == "cloud" ? 2.0 : 1.05) * static_cast<double>(twin.pairs.size()));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "under a mask project and bin make the same pairs but for the tiles outside, whatever the mask") {
+TEST_CASE_FIXTURE(
+    Gpu, "under a mask project and bin make the same pairs but for the tiles outside, whatever the mask") {
     std::mt19937 random(1);
     // More columns of tiles than a word of the mask has bits, a scene in which many splats have large boxes,
     // and boxes of all widths.
     std::vector<test::Splat> wide_splats;
     for (int i = 0; i < 400; ++i) {
         const auto draw = [&] { return static_cast<float>(random() % 10000) / 10000.0f; };
-        wide_splats.push_back({{12.0f * draw() - 6.0f, 0.4f * draw() - 0.2f, 1.0f}, {1, 0, 0, 0}, {0.05f + 1.5f * draw(), 0.02f}});
+        wide_splats.push_back({{12.0f * draw() - 6.0f, 0.4f * draw() - 0.2f, 1.0f},
+                               {1, 0, 0, 0},
+                               {0.05f + 1.5f * draw(), 0.02f}});
     }
     const ViewedScene wide{"wide", test::makeScene(wide_splats), test::makeEye({1100, 40})};
-    for (const ViewedScene& view : {test::viewBuiltin("builtin:atelier", {1100, 40}, 20000), test::viewCloud({530, 130}), wide}) {
+    for (const ViewedScene& view :
+         {test::viewBuiltin("builtin:atelier", {1100, 40}, 20000), test::viewCloud({530, 130}), wide}) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
         const std::vector<TilePair> all = binOnDevice(*this, view, twin);
         const glm::uvec2 size_tiles = (view.eye.size_px + 15u) / 16u;
-        std::vector<std::vector<std::uint8_t>> masks(5, std::vector<std::uint8_t>(std::size_t{size_tiles.x} * size_tiles.y, 0));
+        std::vector<std::vector<std::uint8_t>> masks(
+            5, std::vector<std::uint8_t>(std::size_t{size_tiles.x} * size_tiles.y, 0));
         for (std::size_t t = 0; t < masks[0].size(); ++t) {
             masks[1][t] = 1;
             masks[2][t] = random() % 2 == 0 ? 1 : 0;

@@ -31,11 +31,15 @@ struct Way {
 struct Expected {
     Expected(const StereoCase& c, const Arrived& arrived, const Kinds& kinds, const Way& way, bool rectified)
         : resolved(reference::resolve(arrived.arrivals, c.eyes, c.settings)) {
-        if (way.parts.errors) { errors = reference::expectErrors(resolved, arrived.arrivals, c.dominant, kinds, c.eyes, c.settings); }
+        if (way.parts.errors) {
+            errors =
+                reference::expectErrors(resolved, arrived.arrivals, c.dominant, kinds, c.eyes, c.settings);
+        }
         if (way.apart && rectified) { reference::moveOddRowsAlike(resolved, c.sizePx()); }
         const glm::dvec3 behind(kBackground);
-        colours = way.parts.forward ? reference::copyColours(c.dominant, arrived.arrivals, kinds, c.eyes, behind)
-                                    : reference::resample(c.dominant, resolved, kinds, c.eyes, behind);
+        colours = way.parts.forward
+                      ? reference::copyColours(c.dominant, arrived.arrivals, kinds, c.eyes, behind)
+                      : reference::resample(c.dominant, resolved, kinds, c.eyes, behind);
         depths = reference::resampleDepths(colours, resolved, kinds, c.sizePx());
         if (!way.coarse) { return; }
         const auto without = colours;
@@ -79,8 +83,8 @@ void resampleApart(StereoOnDevice& device, Parts parts, bool coarse) {
 
 // Runs the pass on one case, in tiles that are reprojected; the others must not change.
 void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differences& differences) {
-    INFO(c.name, ", gap px ", way.gap_px, ", rows ", static_cast<int>(way.rows), ", forward ", way.parts.forward, ", moves row ",
-         way.parts.moves_row);
+    INFO(c.name, ", gap px ", way.gap_px, ", rows ", static_cast<int>(way.rows), ", forward ",
+         way.parts.forward, ", moves row ", way.parts.moves_row);
     if (areHalves(way.rows)) { test::roundToHalves(c.dominant); }
     c.settings.forward = way.parts.forward;
     // Gaps that reproject has not closed are left to this pass.
@@ -126,12 +130,15 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
                 const double rounding = !areHalves(way.rows) ? 0.0
                                         : way.coarse         ? 2.0 * std::max(its * 0x1.1p-11, 0x1p-24)
                                                              : std::max(its * 0x1.01p-11, 0x1p-25);
-                differences.colour = std::max(differences.colour, std::abs(static_cast<double>(colours[i][channel]) - its) - rounding);
+                differences.colour = std::max(
+                    differences.colour, std::abs(static_cast<double>(colours[i][channel]) - its) - rounding);
             }
         } else if (!way.apart) {
             other_class += !parts.classes || classes[i] == 0 ? 0 : 1;
             if (kind == TileKind::kHidden) {
-                touched += colours[i] == gpu::vec4(kBackground, 0.0f) && (!parts.depths || depths[i] == 0.0f) ? 0 : 1;
+                touched += colours[i] == gpu::vec4(kBackground, 0.0f) && (!parts.depths || depths[i] == 0.0f)
+                               ? 0
+                               : 1;
             } else {
                 touched += std::bit_cast<gpu::uint>(depths[i]) == StereoOnDevice::kUnwritten ? 0 : 1;
                 touched += isSamePixel(before, after, i, device) ? 0 : 1;
@@ -144,10 +151,14 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
     CHECK(other_parent == 0);
     if (way.apart) { return; }
     const gpu::WarpCounters counters = device.readCounters();
-    if (parts.classes) { CHECK(std::array{counters.covered_pixels, counters.gap_pixels, counters.hole_pixels} == counts); }
+    if (parts.classes) {
+        CHECK(std::array{counters.covered_pixels, counters.gap_pixels, counters.hole_pixels} == counts);
+    }
     const gpu::DispatchSize groups = counters.component_groups;
     const glm::uvec2 tiles = tilesOf(c.sizePx());
-    if (parts.components) { CHECK(groups.x * groups.y * groups.z == (counts[gpu::kHole] > 0 ? tiles.x * 2 * tiles.y : 0)); }
+    if (parts.components) {
+        CHECK(groups.x * groups.y * groups.z == (counts[gpu::kHole] > 0 ? tiles.x * 2 * tiles.y : 0));
+    }
     if (way.rows == Rows::kOwn) { CHECK(device.readArrivals() == arrived.words); }
     // Added to what is there.
     const auto errors = device.readTileErrors();
@@ -157,7 +168,8 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
         } else if (c.sizePx().y > 2) {
             differences.count((errors[t] - kNewcomers) / kSteps, expected.errors[t], t, 1e-4);
         } else {
-            differences.count((errors[t] - kNewcomers) / kSteps, expected.errors[t], t, c.sizePx().x <= 5000 ? 1e-3 : 4e-3, 32.0);
+            differences.count((errors[t] - kNewcomers) / kSteps, expected.errors[t], t,
+                              c.sizePx().x <= 5000 ? 1e-3 : 4e-3, 32.0);
         }
     }
 }
@@ -167,7 +179,8 @@ Differences checkAll(Gpu& gpu, std::span<const Way> ways) {
     for (const StereoCase& c : test::makeStereoCases()) {
         for (const Way& way : ways) { check(gpu, c, test::markSome(test::tileCount(c.sizePx())), way, all); }
     }
-    MESSAGE("largest difference " << all.colour << ", of depths " << all.depth << "; " << all.other_tiles.size() << " of " << all.tiles
+    MESSAGE("largest difference " << all.colour << ", of depths " << all.depth << "; "
+                                  << all.other_tiles.size() << " of " << all.tiles
                                   << " tiles differ in error, by up to " << all.error);
     // A place is off by float32's rounding of a column, up to 1e-5 px, and the picture's slope is up to about
     // 1 per pixel; measured: 3.5e-6 and 3.5e-7.
@@ -208,16 +221,18 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "resample finds the twin's colours, depths, classes and errors in tiles that are moved, and leaves the others alone") {
-    const std::array ways{Way{0, Rows::kOwn, {.errors = true}},
-                          Way{2, Rows::kShared, {.errors = true, .depths = true, .classes = true}},
-                          Way{2, Rows::kSharedHalves, {.errors = true}},
-                          Way{5, Rows::kOwn, {.errors = true, .depths = true, .classes = true}},
-                          Way{5, Rows::kOwnHalves, {.depths = true, .classes = true}},
-                          Way{2, Rows::kShared, {.classes = true, .components = true}},
-                          Way{0, Rows::kSharedHalves, {.depths = true, .classes = true, .forward = true}},
-                          Way{2, Rows::kOwn, {.depths = true, .classes = true, .forward = true}},
-                          Way{2, Rows::kSharedHalves, {.classes = true, .components = true, .forward = true}}};
+                  "resample finds the twin's colours, depths, classes and errors in tiles that are moved, "
+                  "and leaves the others alone") {
+    const std::array ways{
+        Way{0, Rows::kOwn, {.errors = true}},
+        Way{2, Rows::kShared, {.errors = true, .depths = true, .classes = true}},
+        Way{2, Rows::kSharedHalves, {.errors = true}},
+        Way{5, Rows::kOwn, {.errors = true, .depths = true, .classes = true}},
+        Way{5, Rows::kOwnHalves, {.depths = true, .classes = true}},
+        Way{2, Rows::kShared, {.classes = true, .components = true}},
+        Way{0, Rows::kSharedHalves, {.depths = true, .classes = true, .forward = true}},
+        Way{2, Rows::kOwn, {.depths = true, .classes = true, .forward = true}},
+        Way{2, Rows::kSharedHalves, {.classes = true, .components = true, .forward = true}}};
     const Differences all = checkAll(*this, ways);
     CHECK(all.depth <= 1e-6);
     // A tile whose place rounds to the next source pixel has another gradient. Measured: 3 of 1140, by up to
@@ -228,19 +243,25 @@ TEST_CASE_FIXTURE(Gpu,
 
 TEST_CASE_FIXTURE(Gpu, "resample does so whatever is asked of it together" * test::nightly()) {
     std::vector<Way> ways;
-    for (const auto& [gap_px, forward] :
-         {std::pair(0, false), std::pair(2, false), std::pair(5, false), std::pair(0, true), std::pair(2, true)}) {
+    for (const auto& [gap_px, forward] : {std::pair(0, false), std::pair(2, false), std::pair(5, false),
+                                          std::pair(0, true), std::pair(2, true)}) {
         for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kOwnHalves, Rows::kSharedHalves}) {
             for (const bool components : {false, true}) {
-                ways.push_back({gap_px, rows, {.depths = true, .classes = true, .components = components, .forward = forward}});
+                ways.push_back(
+                    {gap_px,
+                     rows,
+                     {.depths = true, .classes = true, .components = components, .forward = forward}});
             }
         }
     }
     CHECK(checkAll(*this, ways).depth <= 1e-6);
 }
 
-TEST_CASE_FIXTURE(Gpu, "resample makes odd rows the means of even ones where an eye does not tell them apart, as the twin does") {
-    Way way{2, Rows::kShared, {.errors = true, .depths = true, .classes = true}, /*apart=*/true, /*coarse=*/true};
+TEST_CASE_FIXTURE(Gpu,
+                  "resample makes odd rows the means of even ones where an eye does not tell them apart, as "
+                  "the twin does") {
+    Way way{
+        2, Rows::kShared, {.errors = true, .depths = true, .classes = true}, /*apart=*/true, /*coarse=*/true};
     std::vector<Way> ways{way};
     way.parts.moves_row = true;
     ways.push_back(way);
@@ -251,7 +272,9 @@ TEST_CASE_FIXTURE(Gpu, "resample makes odd rows the means of even ones where an 
     CHECK(all.depth <= 1e-5);  // where this pass moves rows, inverse depths are its own, with 18 bits
 }
 
-TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows at once or the odd ones later, to the bit") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "resample moves a row itself as reproject would, all rows at once or the odd ones later, to the bit") {
     std::size_t pictures = 0;
     const Parts moved{.errors = true, .depths = true, .classes = true},
         copied{.depths = true, .classes = true, .forward = true, .hidden_tiles = true};
@@ -259,8 +282,9 @@ TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows
     hidden.hidden_tiles = apart_hidden.hidden_tiles = true;
     for (StereoCase c : test::makeStereoCases()) {
         if (toDevice(*this, c).rectified() == 0) { continue; }
-        for (const Way& way : {Way{2, Rows::kShared, moved}, Way{5, Rows::kSharedHalves, hidden}, Way{2, Rows::kShared, copied},
-                               Way{2, Rows::kSharedHalves, apart, true}, Way{5, Rows::kShared, apart_hidden, true}}) {
+        for (const Way& way : {Way{2, Rows::kShared, moved}, Way{5, Rows::kSharedHalves, hidden},
+                               Way{2, Rows::kShared, copied}, Way{2, Rows::kSharedHalves, apart, true},
+                               Way{5, Rows::kShared, apart_hidden, true}}) {
             INFO(c.name, ", gap px ", way.gap_px, ", apart ", way.apart, ", forward ", way.parts.forward);
             c.settings.gap_px = way.gap_px;
             c.settings.forward = way.parts.forward;
@@ -272,7 +296,8 @@ TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows
     CHECK(pictures == 50);
 }
 
-TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
+TEST_CASE_FIXTURE(
+    Gpu, "resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
     // Everything moves by whole pixels: what is at inverse depth 0.1 by 1 px to the left, what is at 0.4 by 4
     // px. Colours are the squares of the columns.
     const glm::uvec2 size_px(16, 1);
@@ -298,9 +323,12 @@ TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of 
             // Column 8 covers column 5 in pixel 4. Pixel 7, which it leaves, lies between columns 7 and 9.
             // Beyond the last column, in pixel 15, that column repeats.
             const int source = x == 4 ? 8 : std::min(x + 1, 15);
-            const float expected = x == 7 ? (49.0f + 81.0f) / 512.0f : static_cast<float>(source * source) / 256.0f;
+            const float expected =
+                x == 7 ? (49.0f + 81.0f) / 512.0f : static_cast<float>(source * source) / 256.0f;
             CHECK(colours[static_cast<std::size_t>(x)] == gpu::vec4(expected, 0.5f, 0.25f, 1.0f));
-            CHECK(classes[static_cast<std::size_t>(x)] == (x == 7 ? gpu::kGap : x == 15 ? gpu::kHole : gpu::kCovered));
+            CHECK(classes[static_cast<std::size_t>(x)] == (x == 7    ? gpu::kGap
+                                                           : x == 15 ? gpu::kHole
+                                                                     : gpu::kCovered));
         }
     }
 }
@@ -308,8 +336,9 @@ TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of 
 TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than it keeps at a time") {
     // A ramp with steps in depth: 20 px of disparity per unit of inverse depth.
     const std::uint32_t longest_shared = test::longestSharedRow(context());
-    for (const std::uint32_t width : {1u, 31u, 33u, 128u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
-                                      longest_shared - 1, longest_shared, longest_shared + 1, 5000u, 16384u}) {
+    for (const std::uint32_t width :
+         {1u, 31u, 33u, 128u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
+          longest_shared - 1, longest_shared, longest_shared + 1, 5000u, 16384u}) {
         CAPTURE(width);
         const glm::uvec2 size_px(width, 2);
         const auto eyes = stereoPair({Pose{}, {200.0, 200.0, 0.5 * width, 1.0}, size_px}, 0.1);
@@ -340,7 +369,9 @@ TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than
             CHECK(differences.other_tiles.empty());
             for (const bool apart : {false, true}) {
                 const Way way{c.settings.gap_px, rows, parts, apart};
-                if (width <= longest_shared) { CHECK(moveRows(*this, c, kinds, way, true) == moveRows(*this, c, kinds, way, false)); }
+                if (width <= longest_shared) {
+                    CHECK(moveRows(*this, c, kinds, way, true) == moveRows(*this, c, kinds, way, false));
+                }
             }
         }
     }
@@ -361,11 +392,15 @@ TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, bu
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < colours.size(); ++i) {
         const bool hidden = kinds[test::tileOf(i, c.sizePx())] == TileKind::kHidden;
-        wrong += (hidden ? colours[i] == gpu::vec4(0.5f, 0.5f, 0.5f, 0.0f) : isSamePixel(before, after, i, device)) ? 0 : 1;
+        wrong +=
+            (hidden ? colours[i] == gpu::vec4(0.5f, 0.5f, 0.5f, 0.0f) : isSamePixel(before, after, i, device))
+                ? 0
+                : 1;
     }
     CHECK(wrong == 0);
     CHECK(std::ranges::all_of(device.readTileErrors(), [](gpu::uint error) { return error == 0; }));
-    CHECK(std::ranges::all_of(device.readClasses(), [](std::uint8_t pixel_class) { return pixel_class == 0; }));
+    CHECK(
+        std::ranges::all_of(device.readClasses(), [](std::uint8_t pixel_class) { return pixel_class == 0; }));
 }
 
 }  // SUITE(resample)

@@ -22,7 +22,8 @@ inline Scene splatsOf(const Scene& scene, std::span<const std::uint32_t> splats)
         some.scales.push_back(scene.scales[splat]);
         if (scene.isGaussian3d()) { some.thicknesses.push_back(scene.thicknesses[splat]); }
         some.opacities.push_back(scene.opacities[splat]);
-        some.sh.insert(some.sh.end(), scene.sh.begin() + splat * numbers, scene.sh.begin() + (splat + 1) * numbers);
+        some.sh.insert(some.sh.end(), scene.sh.begin() + splat * numbers,
+                       scene.sh.begin() + (splat + 1) * numbers);
     }
     return some;
 }
@@ -54,13 +55,16 @@ inline Scene inMortonOrder(const Scene& scene) {
     return splatsOf(scene, order);
 }
 
-inline std::uint32_t pagesOf(std::size_t splats) { return static_cast<std::uint32_t>((splats + gpu::kPageSplats - 1) / gpu::kPageSplats); }
+inline std::uint32_t pagesOf(std::size_t splats) {
+    return static_cast<std::uint32_t>((splats + gpu::kPageSplats - 1) / gpu::kPageSplats);
+}
 
 // A whole scene as one part, which the first frame brings to the device; `more` pages stay free.
 class WholeInPages {
 public:
     WholeInPages(const Context& context, const Scene& scene, std::uint32_t more = 0)
-        : resident(context, traitsOf(scene), {.capacity_pages = pagesOf(scene.size()) + more, .most_bytes_a_frame = 1u << 30}),
+        : resident(context, traitsOf(scene),
+                   {.capacity_pages = pagesOf(scene.size()) + more, .most_bytes_a_frame = 1u << 30}),
           part(resident.add(PackedPages(scene, resident.traits())).value()) {}
 
     ResidentScene resident;

@@ -37,7 +37,8 @@ Tiles drawHistory(glm::uvec2 size, std::mt19937& random) {
         for (int q = 0; q < 4; ++q) {
             tile.growth[q] = is_still || random() % 3 == 0 ? 0.0f : 0.02f * draw();
             tile.errors[q] = is_still || random() % 4 == 0 ? 0.0f : 0.2f * std::pow(draw(), 6.0f);
-            tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
+            tile.grown[q] =
+                is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
             tile.unseen |= random() % 4 == 0 ? static_cast<gpu::uint>(random() % 65) << (8 * q) : 0;
         }
         // Up to 1.4 times what masks errors.
@@ -67,7 +68,8 @@ void checkLists(const Chosen& chosen, glm::uvec2 size, bool counts = true) {
     CHECK(chosen.masked_tiles.per_item.x * chosen.masked_tiles.per_item.y * gpu::kGroupSize >= list.size());
     // If no tile is rendered, no splat is visited.
     CHECK(chosen.masked_visible.count == (list.empty() ? 0 : kVisible));
-    CHECK(chosen.masked_visible.per_item.x == (list.empty() ? 0 : (kVisible + gpu::kGroupSize - 1) / gpu::kGroupSize));
+    CHECK(chosen.masked_visible.per_item.x ==
+          (list.empty() ? 0 : (kVisible + gpu::kGroupSize - 1) / gpu::kGroupSize));
     if (!counts) { return; }
     CHECK(chosen.counters.chosen_cost == cost);
     CHECK(chosen.counters.predicted_tiles == std::ranges::count(chosen.kinds, gpu::kTilePredicted));
@@ -90,11 +92,15 @@ Expected expectOf(const Tiles& eye, const Chosen& got) {
     reference::growErrors(twin);
     std::size_t other = 0;
     for (std::size_t t = 0; t < twin.size(); ++t) {
-        const bool hidden = expected.kinds[t] == TileKind::kHidden, coarse = got.errors[t] == gpu::kSeenCoarsely;
+        const bool hidden = expected.kinds[t] == TileKind::kHidden,
+                   coarse = got.errors[t] == gpu::kSeenCoarsely;
         const double error = hidden ? 0.0 : reference::worthOf(twin[t]);
         expected.costs[t] = hidden ? 0 : reference::costOf(twin[t]);
         for (std::size_t q = 0; q < 4; ++q) {
-            other += test::isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]), twin[t].errors[q], 1e-6, 0.0) ? 0 : 1;
+            other += test::isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]),
+                                  twin[t].errors[q], 1e-6, 0.0)
+                         ? 0
+                         : 1;
         }
         other += coarse || test::isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps) ? 0 : 1;
         other += coarse || (got.errors[t] == 0) == (error == 0.0) ? 0 : 1;
@@ -120,7 +126,9 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
         expected.push_back(expectOf(eyes[e], got[e]));
         const auto& [kinds, errors, costs] = expected[e];
         std::vector<double> shares;
-        if (how.gaze) { shares = reference::findSeenShares(how.seen, {how.gaze->direction, how.gaze->clear_rad}); }
+        if (how.gaze) {
+            shares = reference::findSeenShares(how.seen, {how.gaze->direction, how.gaze->clear_rad});
+        }
         prices.push_back(reference::price(kinds, errors, costs, shares));
         std::vector<gpu::uint> words;
         for (std::size_t t = 0; t < costs.size(); ++t) {
@@ -129,13 +137,15 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
             // of an error is not known to the last digit.
             const gpu::uint bin = got[e].prices[t] >> 22, its = prices[e][t].value_or(bin);
             const bool is_rough =
-                how.error_bound == 0.0 && (how.gaze || isOnBorder(std::floor(errors[t] * kErrorSteps), static_cast<double>(costs[t])));
+                how.error_bound == 0.0 &&
+                (how.gaze || isOnBorder(std::floor(errors[t] * kErrorSteps), static_cast<double>(costs[t])));
             if (prices[e][t] && is_rough && std::max(bin, its) - std::min(bin, its) == 1) {
                 prices[e][t] = bin;
                 ++rough;
             }
             if (how.error_bound > 0.0 && prices[e][t]) {
-                prices[e][t] = reference::priceUnderBound(*prices[e][t], test::tileOf(got[e].history[t]), how.error_bound);
+                prices[e][t] = reference::priceUnderBound(*prices[e][t], test::tileOf(got[e].history[t]),
+                                                          how.error_bound);
             }
             words.push_back(prices[e][t] ? *prices[e][t] << 22 | static_cast<gpu::uint>(costs[t]) : 0);
             if (prices[e][t]) { bins[*prices[e][t]] += static_cast<gpu::uint>(costs[t]); }
@@ -144,12 +154,16 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     }
     if (!how.gaze) { CHECK(got[0].bins == bins); }
     CHECK(rough <= 1 + eyes[0].count() / 50);
-    for (std::size_t e = 0; e < eyes.size(); ++e) { priced.push_back({expected[e].kinds, prices[e], expected[e].costs}); }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        priced.push_back({expected[e].kinds, prices[e], expected[e].costs});
+    }
     if (has_history) {
         CHECK(got[0].counters.picture_cost == picture_cost);
-        auto budget_cost = static_cast<std::uint64_t>(static_cast<float>(how.budget) * static_cast<float>(picture_cost));
+        auto budget_cost =
+            static_cast<std::uint64_t>(static_cast<float>(how.budget) * static_cast<float>(picture_cost));
         if (how.error_bound > 0.0) {
-            budget_cost = std::min<std::uint64_t>(reference::budgetUnderBound(priced, budget_cost, picture_cost), how.most_cost);
+            budget_cost = std::min<std::uint64_t>(
+                reference::budgetUnderBound(priced, budget_cost, picture_cost), how.most_cost);
         }
         reference::selectTogether(priced, budget_cost);
     } else {
@@ -162,7 +176,9 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
         for (std::size_t t = 0; t < kinds.size(); ++t) { other += got[e].kinds[t] == kinds[t] ? 0 : 1; }
         CHECK(other <= (how.gaze ? 1 + kinds.size() / 100 : 0));
         gpu::uint waiting = 0;
-        for (std::size_t t = 0; t < kinds.size(); ++t) { waiting += prices[e][t] >= reference::kOverPrice && kinds[t] == 0 ? 1 : 0; }
+        for (std::size_t t = 0; t < kinds.size(); ++t) {
+            waiting += prices[e][t] >= reference::kOverPrice && kinds[t] == 0 ? 1 : 0;
+        }
         if (how.error_bound > 0.0) { CHECK(got[e].counters.waiting_tiles == waiting); }
         checkLists(got[e], eyes[e].size);
     }
@@ -170,24 +186,32 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
 
 std::uint64_t costOfErrors(const Tiles& tiles) {
     std::uint64_t cost = 0;
-    for (std::size_t t = 0; t < tiles.count(); ++t) { cost += tiles.kinds[t] == 0 && tiles.errors[t] > 0 ? tiles.costs[t] : 0; }
+    for (std::size_t t = 0; t < tiles.count(); ++t) {
+        cost += tiles.kinds[t] == 0 && tiles.errors[t] > 0 ? tiles.costs[t] : 0;
+    }
     return cost;
 }
 
-TEST_CASE_FIXTURE(Gpu, "price and select take the twin's tiles, however many there are, with budgets of none, one and all") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "price and select take the twin's tiles, however many there are, with budgets of none, one and all") {
     std::mt19937 random(7);
-    for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(31, 1), glm::uvec2(127, 1), glm::uvec2(32, 4), glm::uvec2(3, 43),
-                                  glm::uvec2(33, 31), glm::uvec2(100, 50)}) {
+    for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(31, 1), glm::uvec2(127, 1), glm::uvec2(32, 4),
+                                  glm::uvec2(3, 43), glm::uvec2(33, 31), glm::uvec2(100, 50)}) {
         const Tiles tiles = drawTiles(size, random);
         const std::uint64_t all = costOfErrors(tiles);
-        for (const std::uint64_t budget :
-             {std::uint64_t{0}, std::uint64_t{15}, std::uint64_t{40}, all / 7, all / 2, all - 1, all, all + 1, 2 * all + 1000}) {
-            if (all > 0) { checkChoice(*this, {tiles}, withCost(std::min<std::uint64_t>(budget, kPictureCost - 1))); }
+        for (const std::uint64_t budget : {std::uint64_t{0}, std::uint64_t{15}, std::uint64_t{40}, all / 7,
+                                           all / 2, all - 1, all, all + 1, 2 * all + 1000}) {
+            if (all > 0) {
+                checkChoice(*this, {tiles}, withCost(std::min<std::uint64_t>(budget, kPictureCost - 1)));
+            }
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the last pair of the budget, and none without an error") {
+TEST_CASE_FIXTURE(Gpu,
+                  "select takes the first of tiles of one price, to the last pair of the budget, and none "
+                  "without an error") {
     std::mt19937 random(8);
     for (const glm::uvec2 size : {glm::uvec2(20, 1), glm::uvec2(30, 20)}) {
         for (const unsigned values : {1u, 5u}) {
@@ -204,7 +228,9 @@ TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the las
             }
             // Also just below and just above where one more fits.
             std::vector<std::uint64_t> budgets{first_three - 1, first_three, first_three + 1, all - 1, all};
-            for (std::uint64_t budget = 0; budget <= all; budget += 1 + all / 7) { budgets.push_back(budget); }
+            for (std::uint64_t budget = 0; budget <= all; budget += 1 + all / 7) {
+                budgets.push_back(budget);
+            }
             for (const std::uint64_t budget : budgets) { checkChoice(*this, {tiles}, withCost(budget)); }
         }
     }
@@ -215,18 +241,27 @@ TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the las
     checkChoice(*this, {none}, withCost(2000));
 }
 
-TEST_CASE_FIXTURE(Gpu, "price tells prices apart from the least to the greatest, and takes sums that stopped growing for equal") {
+TEST_CASE_FIXTURE(Gpu,
+                  "price tells prices apart from the least to the greatest, and takes sums that stopped "
+                  "growing for equal") {
     Tiles tiles({31, 8});
     for (std::size_t t = 0; t < tiles.count(); ++t) {
         const std::size_t bit = t % 31;
         tiles.errors[t] = (1u << bit) | (t / 31 % 2 == 0 ? 0u : (1u << bit) / 3);
-        tiles.costs[t] = t / 62 == 0 ? 17 : t / 62 == 1 ? 300 : t / 62 == 2 ? 70001 : gpu::kMaxTileCost - 123456;
+        tiles.costs[t] = t / 62 == 0   ? 17
+                         : t / 62 == 1 ? 300
+                         : t / 62 == 2 ? 70001
+                                       : gpu::kMaxTileCost - 123456;
         while (isOnBorder(tiles.errors[t], tiles.costs[t])) { ++tiles.errors[t]; }
     }
-    for (const std::uint64_t budget : {17, 1000, 200000, 10000000}) { checkChoice(*this, {tiles}, withCost(budget)); }
+    for (const std::uint64_t budget : {17, 1000, 200000, 10000000}) {
+        checkChoice(*this, {tiles}, withCost(budget));
+    }
     Tiles full({6, 1});
     full.errors = {5, 0x7fffffffu, 0xffffffffu, 0x80000000u, 0x7ffffffeu, 0x90000000u};
-    for (const std::uint64_t budget : {100, 250, 300, 499, 600}) { checkChoice(*this, {full}, withCost(budget)); }
+    for (const std::uint64_t budget : {100, 250, 300, 499, 600}) {
+        checkChoice(*this, {full}, withCost(budget));
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded down") {
@@ -234,15 +269,18 @@ TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded 
     tiles.errors.assign(10, 1000);
     // 0.15 in single precision is slightly more than that.
     for (const auto& [share, picture_cost, chosen] :
-         {std::tuple(0.15, 2000u, 3), std::tuple(0.15, 1999u, 2), std::tuple(0.5, 2000u, 10), std::tuple(1.0, 1000u, 10),
-          std::tuple(1.0, 999u, 9), std::tuple(0.0, 2000u, 0), std::tuple(1.0, 4000000000u, 10)}) {
+         {std::tuple(0.15, 2000u, 3), std::tuple(0.15, 1999u, 2), std::tuple(0.5, 2000u, 10),
+          std::tuple(1.0, 1000u, 10), std::tuple(1.0, 999u, 9), std::tuple(0.0, 2000u, 0),
+          std::tuple(1.0, 4000000000u, 10)}) {
         INFO("share ", share, ", picture cost ", picture_cost);
         const auto got = chooseOnDevice(*this, {tiles}, {.budget = share, .picture_cost = picture_cost});
         CHECK(got[0].counters.predicted_tiles == static_cast<gpu::uint>(chosen));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "select lists the tiles that others have marked, and all that are shown where nothing is worth moving") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "select lists the tiles that others have marked, and all that are shown where nothing is worth moving") {
     std::mt19937 random(10);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(64, 4), glm::uvec2(65, 40)}) {
         for (const unsigned percent : {0u, 3u, 50u, 100u}) {
@@ -271,8 +309,9 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     for (std::size_t t = 0; t < whole.size(); ++t) {
         if (whole[t]) { bins[*whole[t]] += tiles.costs[t]; }
     }
-    for (const Gaze& gaze : {Gaze{{0.0, 0.0, 1.0}, 0.0}, Gaze{{0.0, 0.0, 1.0}, 0.3}, Gaze{{-3.0, 1.0, 4.0}, 0.1},
-                             Gaze{{1.0, 0.0, 0.0}, 0.0}, Gaze{{0.0, 0.1, -1.0}, 0.0}}) {
+    for (const Gaze& gaze :
+         {Gaze{{0.0, 0.0, 1.0}, 0.0}, Gaze{{0.0, 0.0, 1.0}, 0.3}, Gaze{{-3.0, 1.0, 4.0}, 0.1},
+          Gaze{{1.0, 0.0, 0.0}, 0.0}, Gaze{{0.0, 0.1, -1.0}, 0.0}}) {
         INFO("direction.x ", gaze.direction.x, ", clear ", gaze.clear_rad);
         const Chosen got = chooseOnDevice(*this, {tiles}, {.seen = eye, .gaze = gaze})[0];
         const auto shares = reference::findSeenShares(eye, {gaze.direction, gaze.clear_rad});
@@ -299,25 +338,32 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "of tiles with a history price and select take the twin's of both eyes, for any budget, bound and gaze") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "of tiles with a history price and select take the twin's of both eyes, for any budget, bound and gaze") {
     std::mt19937 random(11);
-    for (const auto& [left, right] : {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
-                                      std::pair(glm::uvec2(43, 9), glm::uvec2(43, 9)), std::pair(glm::uvec2(20, 17), glm::uvec2(5, 3))}) {
+    for (const auto& [left, right] :
+         {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
+          std::pair(glm::uvec2(43, 9), glm::uvec2(43, 9)), std::pair(glm::uvec2(20, 17), glm::uvec2(5, 3))}) {
         for (const double budget : {0.0, 0.001, 0.1, 0.3, 0.9, 1.0}) {
             checkChoice(*this, {drawHistory(left, random), drawHistory(right, random)}, {.budget = budget});
             checkChoice(*this, {drawHistory(left, random)}, {.budget = budget});
-            checkChoice(*this, {drawHistory(left, random), drawHistory(right, random)}, {.budget = budget, .error_bound = 0.04});
+            checkChoice(*this, {drawHistory(left, random), drawHistory(right, random)},
+                        {.budget = budget, .error_bound = 0.04});
         }
     }
     Eye eye = test::makeEye({43 * 16, 20 * 16});
     eye.intrinsics = intrinsicsFromFovX(glm::radians(90.0), eye.size_px);
     const Gaze gaze{glm::normalize(glm::dvec3(0.3, -0.1, 1.0)), 0.05};
     for (const double budget : {0.02, 0.2, 0.6, 1.0}) {
-        checkChoice(*this, {drawHistory({43, 20}, random), drawHistory({43, 20}, random)}, {.budget = budget, .seen = eye, .gaze = gaze});
+        checkChoice(*this, {drawHistory({43, 20}, random), drawHistory({43, 20}, random)},
+                    {.budget = budget, .seen = eye, .gaze = gaze});
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "of equal tiles with a history the first eye's are first, and a tile dearer than the budget has its turn") {
+TEST_CASE_FIXTURE(Gpu,
+                  "of equal tiles with a history the first eye's are first, and a tile dearer than the "
+                  "budget has its turn") {
     gpu::HistoryTile plain{};
     plain.cost = 84;  // 100 including the cost of the tile itself
     plain.age = 1;
@@ -325,7 +371,9 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a history the first eye's are first,
     plain.squared_gradient = 3 * 256 << 14;  // an eighth in each channel of each pixel, which masks errors
     std::vector<Tiles> equal(2, Tiles({20, 10}));
     for (Tiles& tiles : equal) { tiles.history.assign(200, plain); }
-    for (const double budget : {0.0, 0.01, 0.4975, 0.51, 0.75, 1.0}) { checkChoice(*this, equal, {.budget = budget}); }
+    for (const double budget : {0.0, 0.01, 0.4975, 0.51, 0.75, 1.0}) {
+        checkChoice(*this, equal, {.budget = budget});
+    }
     const auto half = chooseOnDevice(*this, equal, {.budget = 0.75});
     CHECK(half[0].list.size() == 200);
     CHECK(half[1].list.size() == 100);
@@ -345,7 +393,9 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a history the first eye's are first,
     How how{.budget = 1.0, .error_bound = 0.105};
     checkChoice(*this, bounded, how);
     const auto over = chooseOnDevice(*this, bounded, how);
-    const auto has = [](const Chosen& chosen, gpu::uint tile) { return std::ranges::count(chosen.list, tile) == 1; };
+    const auto has = [](const Chosen& chosen, gpu::uint tile) {
+        return std::ranges::count(chosen.list, tile) == 1;
+    };
     CHECK((has(over[0], 20) && has(over[1], 30) && has(over[1], 40)));
     CHECK(over[0].list.size() + over[1].list.size() == 3 + 20);
     // An error that contrast masks is visible where there is no contrast.

@@ -19,8 +19,8 @@ Tiles roundLens(Side side) {
     for (std::uint32_t y = 0; y < kTiles.y; ++y) {
         for (std::uint32_t x = 0; x < kTiles.x; ++x) {
             const glm::dvec2 middle(side == kLeft ? 0.54 : 0.46, 0.5);
-            const glm::dvec2 near =
-                glm::clamp(middle, glm::dvec2(x, y) / glm::dvec2(kTiles), glm::dvec2(x + 1, y + 1) / glm::dvec2(kTiles));
+            const glm::dvec2 near = glm::clamp(middle, glm::dvec2(x, y) / glm::dvec2(kTiles),
+                                               glm::dvec2(x + 1, y + 1) / glm::dvec2(kTiles));
             hidden.push_back(glm::length(near - middle) > 0.45 ? 1 : 0);
         }
     }
@@ -33,7 +33,9 @@ const std::array<Tiles, 2>& lenses() {
     return both;
 }
 
-std::uint64_t countHidden(Side side) { return static_cast<std::uint64_t>(std::ranges::count(lenses()[side], 1)); }
+std::uint64_t countHidden(Side side) {
+    return static_cast<std::uint64_t>(std::ranges::count(lenses()[side], 1));
+}
 
 FrameSettings makeSettings(Mode mode, Side dominant, bool masked) {
     FrameSettings settings;
@@ -60,7 +62,8 @@ void checkPicture(const Image& picture, const Image& whole, const Image& depth, 
             other += samePixel(picture, whole, i) ? 0 : 1;
         } else {
             const float* pixel = &picture.values[4 * i];
-            const bool background = std::equal(pixel, pixel + 4, std::array{0.125f, 0.25f, 0.5f, 0.0f}.begin());
+            const bool background =
+                std::equal(pixel, pixel + 4, std::array{0.125f, 0.25f, 0.5f, 0.0f}.begin());
             not_background += background && depth.values[i] == 0.0f ? 0 : 1;
         }
     }
@@ -77,35 +80,42 @@ struct Made {
     reference::StereoPictures twin;
     std::vector<std::uint32_t> same_kind;  // tiles of which both make the same kind; these look alike, too
 };
-Made makeWithTwin(StereoFrame& frame, const Scene& scene, const std::array<Eye, 2>& eyes, const reference::StereoSettings& twin_settings,
-                  const FrameSettings& settings) {
+Made makeWithTwin(StereoFrame& frame, const Scene& scene, const std::array<Eye, 2>& eyes,
+                  const reference::StereoSettings& twin_settings, const FrameSettings& settings) {
     const Side dominant = settings.dominant, other = dominant == kLeft ? kRight : kLeft;
     AffiliatedFrame made = test::makeAffiliated(frame, eyes, settings);
     Made both{std::move(made),
               frame.readDepth(other),
-              reference::renderStereo(scene, {eyes[dominant], eyes[other]}, twin_settings, {.background = settings.background}),
+              reference::renderStereo(scene, {eyes[dominant], eyes[other]}, twin_settings,
+                                      {.background = settings.background}),
               {}};
     for (std::size_t t = 0; t < both.twin.tile_kinds.size(); ++t) {
-        both.same_kind.push_back(both.made.tile_kinds[t] == static_cast<std::uint32_t>(both.twin.tile_kinds[t]) ? 1 : 0);
+        both.same_kind.push_back(
+            both.made.tile_kinds[t] == static_cast<std::uint32_t>(both.twin.tile_kinds[t]) ? 1 : 0);
     }
-    const Image expected = test::keepTiles(test::toImage(eyes[0].size_px, both.twin.affiliated), both.same_kind);
+    const Image expected =
+        test::keepTiles(test::toImage(eyes[0].size_px, both.twin.affiliated), both.same_kind);
     CHECK(compare(test::keepTiles(both.made.pictures[other], both.same_kind), expected, 4).psnrDb() >= 80.0);
     CHECK(compare(both.made.pictures[dominant], test::toImage(both.twin.dominant), 4).psnrDb() >= 80.0);
     return both;
 }
 
-TEST_CASE_FIXTURE(Gpu, "eyes in full lose their hidden tiles and the pairs of these, and no byte of the others") {
+TEST_CASE_FIXTURE(Gpu,
+                  "eyes in full lose their hidden tiles and the pairs of these, and no byte of the others") {
     const ViewedScene view = room();
     const auto eyes = test::headsetEyes(view.eye, glm::radians(4.0));
     test::KeptFrame frame(context(), view.scene);
-    for (const auto& [mode, dominant] : {std::pair(Mode::kMono, kLeft), std::pair(Mode::kTwoPass, kRight), std::pair(Mode::kShared, kLeft),
-                                         std::pair(Mode::kShared, kRight)}) {
+    for (const auto& [mode, dominant] : {std::pair(Mode::kMono, kLeft), std::pair(Mode::kTwoPass, kRight),
+                                         std::pair(Mode::kShared, kLeft), std::pair(Mode::kShared, kRight)}) {
         INFO("mode ", static_cast<int>(mode), ", dominant ", static_cast<int>(dominant));
         const auto seen = std::span(eyes).first(mode == Mode::kMono ? 1 : 2);
         const FrameResult whole = frame.render(seen, makeSettings(mode, dominant, false));
         std::vector<Image> expected;
-        for (std::size_t e = 0; e < seen.size(); ++e) { expected.push_back(frame.readPicture(static_cast<int>(e))); }
-        CHECK_FALSE(whole.counters.named().contains(mode == Mode::kMono ? "tiles_hidden" : "tiles_hidden_left"));
+        for (std::size_t e = 0; e < seen.size(); ++e) {
+            expected.push_back(frame.readPicture(static_cast<int>(e)));
+        }
+        CHECK_FALSE(
+            whole.counters.named().contains(mode == Mode::kMono ? "tiles_hidden" : "tiles_hidden_left"));
         const FrameResult masked = frame.render(seen, makeSettings(mode, dominant, true));
         for (std::size_t e = 0; e < seen.size(); ++e) {
             const Side side = e == 0 ? kLeft : kRight;
@@ -113,31 +123,41 @@ TEST_CASE_FIXTURE(Gpu, "eyes in full lose their hidden tiles and the pairs of th
             checkPicture(frame.readPicture(side), expected[e], frame.readDepth(side), side);
             const std::string suffix = mode == Mode::kMono ? "" : side == kLeft ? "_left" : "_right";
             CHECK(masked.counters.named().at("tiles_hidden" + suffix) == countHidden(side));
-            CHECK(100 * masked.counters.named().at("tile_pairs" + suffix) < 95 * whole.counters.named().at("tile_pairs" + suffix));
+            CHECK(100 * masked.counters.named().at("tile_pairs" + suffix) <
+                  95 * whole.counters.named().at("tile_pairs" + suffix));
         }
         const auto& left_out = masked.left_out;
-        CHECK(std::ranges::count_if(left_out, [](const std::string& s) { return s.find("its lens never shows them") != s.npos; }) ==
-              static_cast<std::ptrdiff_t>(seen.size()));
+        CHECK(std::ranges::count_if(left_out, [](const std::string& s) {
+                  return s.find("its lens never shows them") != s.npos;
+              }) == static_cast<std::ptrdiff_t>(seen.size()));
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in kind, colour and depth") {
     const ViewedScene view = room(), fence = test::viewBuiltin("builtin:fence", kSizePx);
-    const auto straight = test::headsetEyes(view.eye, 0.0), canted = test::headsetEyes(view.eye, glm::radians(4.0)),
+    const auto straight = test::headsetEyes(view.eye, 0.0),
+               canted = test::headsetEyes(view.eye, glm::radians(4.0)),
                before_fence = stereoPair(fence.eye, 0.12);
-    const std::array seen_by{std::pair(&view, &straight), std::pair(&view, &canted), std::pair(&fence, &before_fence)};
+    const std::array seen_by{std::pair(&view, &straight), std::pair(&view, &canted),
+                             std::pair(&fence, &before_fence)};
     for (std::size_t way = 0; way < 9; ++way) {
         const auto& [seen, eyes] = seen_by[way / 3];
-        const TileChoice method = std::array{TileChoice::kNone, TileChoice::kPaper, TileChoice::kPredicted}[way % 3];
+        const TileChoice method =
+            std::array{TileChoice::kNone, TileChoice::kPaper, TileChoice::kPredicted}[way % 3];
         const Mode mode = std::array{Mode::kReproject, Mode::kPaper, Mode::kPredicted}[way % 3];
         INFO(seen->name, ", way ", way);
         Scene scene = seen->scene;
         test::hideWhatMeetsTheNearPlane(scene, *eyes);
         test::KeptFrame frame(context(), scene);
-        const Side dominant = method == TileChoice::kPaper ? kRight : kLeft, other = dominant == kLeft ? kRight : kLeft;
-        const reference::StereoSettings twin_settings{
-            .choice = method, .margin_px = 8, .center_rois = true, .source_hidden = lenses()[dominant], .target_hidden = lenses()[other]};
-        const auto [made, depth, twin, same_kind] = makeWithTwin(frame, scene, *eyes, twin_settings, makeSettings(mode, dominant, true));
+        const Side dominant = method == TileChoice::kPaper ? kRight : kLeft,
+                   other = dominant == kLeft ? kRight : kLeft;
+        const reference::StereoSettings twin_settings{.choice = method,
+                                                      .margin_px = 8,
+                                                      .center_rois = true,
+                                                      .source_hidden = lenses()[dominant],
+                                                      .target_hidden = lenses()[other]};
+        const auto [made, depth, twin, same_kind] =
+            makeWithTwin(frame, scene, *eyes, twin_settings, makeSettings(mode, dominant, true));
         std::uint64_t again = 0, predicted_cost = 0;
         for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
             CHECK((made.tile_kinds[t] == gpu::kTileHidden) == (lenses()[other][t] != 0));
@@ -150,7 +170,8 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
         CHECK(countOf(made.result, "tiles_patched") == again);
         // The budget is a share of what is shown. The device has the twin's pairs and few more.
         if (method == TileChoice::kPredicted) {
-            CHECK(static_cast<double>(predicted_cost) <= twin_settings.budget * static_cast<double>(countOf(made.result, "work_full")));
+            CHECK(static_cast<double>(predicted_cost) <=
+                  twin_settings.budget * static_cast<double>(countOf(made.result, "work_full")));
         }
         // Only reprojected pixels are counted, before any tile is rendered for its errors.
         std::uint64_t moved_px = 0, other_depth = 0;
@@ -161,7 +182,8 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
             const double d = static_cast<double>(depth.values[i]), e = twin.affiliated_depth[i];
             other_depth += same_kind[tile] != 0 && !(std::abs(d - e) <= 1e-3 * std::abs(e) + 1e-4) ? 1 : 0;
         }
-        CHECK(countOf(made.result, "pixels_covered") + countOf(made.result, "pixels_gap") + countOf(made.result, "pixels_hole") ==
+        CHECK(countOf(made.result, "pixels_covered") + countOf(made.result, "pixels_gap") +
+                  countOf(made.result, "pixels_hole") ==
               moved_px);
         CHECK(other_depth * 200 <= depth.pixelCount());
         FrameSettings without = makeSettings(mode, dominant, true);
@@ -171,7 +193,8 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's, and so are rows that the eye does not tell apart") {
+TEST_CASE_FIXTURE(
+    Gpu, "the device's choice for a gaze is the twin's, and so are rows that the eye does not tell apart") {
     auto view = test::viewBuiltin("builtin:atelier", {256, 192}, 20000);
     const auto eyes = test::headsetEyes(view.eye, glm::radians(5.0));
     test::hideWhatMeetsTheNearPlane(view.scene, eyes);
@@ -190,18 +213,21 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's, and so are
         const AffiliatedFrame everywhere = test::makeAffiliated(frame, eyes, settings);
         const std::size_t other = 1 - static_cast<std::size_t>(dominant);
         settings.gazes[other] = gaze;
-        const auto [made, depth, twin, same_kind] = makeWithTwin(frame, view.scene, eyes, twin_settings, settings);
+        const auto [made, depth, twin, same_kind] =
+            makeWithTwin(frame, view.scene, eyes, twin_settings, settings);
         CHECK(std::ranges::count(same_kind, 0u) <= 1);
         // Where the eye does not resolve single rows, rows are means of their neighbours, in both.
         const auto valueAt = [&](std::size_t x, std::size_t y) {
             return static_cast<double>(made.pictures[other].values[4 * (y * view.eye.size_px.x + x)]);
         };
         for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
-            const std::size_t x = 16 * (t % (view.eye.size_px.x / 16)), y = 16 * (t / (view.eye.size_px.x / 16));
+            const std::size_t x = 16 * (t % (view.eye.size_px.x / 16)),
+                              y = 16 * (t / (view.eye.size_px.x / 16));
             double most = 0.0;
             for (std::size_t i = 0; i < 16 * 7; ++i) {
                 const std::size_t column = x + i % 16, row = y + 1 + 2 * (i / 16);
-                most = std::max(most, std::abs(2.0 * valueAt(column, row) - valueAt(column, row - 1) - valueAt(column, row + 1)));
+                most = std::max(most, std::abs(2.0 * valueAt(column, row) - valueAt(column, row - 1) -
+                                               valueAt(column, row + 1)));
             }
             means += made.tile_kinds[t] == 0 && most < 1e-6 ? 1 : 0;
         }
@@ -225,7 +251,9 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
     const Image whole = frame.readPicture(kRight);
     // The left lens hides the whole right half; nothing reprojected from the other half reaches there.
     Tiles right_half;
-    for (std::uint32_t t = 0; t < kTiles.x * kTiles.y; ++t) { right_half.push_back(t % kTiles.x >= 6 ? 1 : 0); }
+    for (std::uint32_t t = 0; t < kTiles.x * kTiles.y; ++t) {
+        right_half.push_back(t % kTiles.x >= 6 ? 1 : 0);
+    }
     for (const Mode mode : {Mode::kPaper, Mode::kPredicted}) {
         FrameSettings settings = makeSettings(mode, kLeft, false);
         settings.stereo.center_rois = false;

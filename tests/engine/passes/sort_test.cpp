@@ -26,15 +26,17 @@ Values makeKeys(int pattern, std::size_t size, unsigned key_bits) {
     std::mt19937 random(static_cast<unsigned>(size));
     Values keys(size);
     for (std::size_t i = 0; i < size; ++i) {
-        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size), top = maskOf(key_bits);
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size),
+                     top = maskOf(key_bits);
         const auto drawn = static_cast<std::uint32_t>(random());
         // Bits above the key's must be ignored.
-        const std::array<std::uint32_t, kPatternCount> of_patterns{drawn,
-                                                                   0x5a5a5a5au,
-                                                                   0x01010101u * (drawn % 5),
-                                                                   static_cast<std::uint32_t>(share * top),
-                                                                   static_cast<std::uint32_t>((1.0 - share) * top),
-                                                                   drawn % 2 == 0 ? 0u : UINT32_MAX};
+        const std::array<std::uint32_t, kPatternCount> of_patterns{
+            drawn,
+            0x5a5a5a5au,
+            0x01010101u * (drawn % 5),
+            static_cast<std::uint32_t>(share * top),
+            static_cast<std::uint32_t>((1.0 - share) * top),
+            drawn % 2 == 0 ? 0u : UINT32_MAX};
         keys[i] = of_patterns[static_cast<std::size_t>(pattern)];
     }
     return keys;
@@ -60,36 +62,46 @@ int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, uns
     }
     const Values blank(keys.size(), kUntouched);
     const Buffer key_buffer = gpu.upload("keys", keys), value_buffer = gpu.upload("values", values);
-    const Buffer spare_keys = gpu.upload("spare keys", blank), spare_values = gpu.upload("spare values", blank);
+    const Buffer spare_keys = gpu.upload("spare keys", blank),
+                 spare_values = gpu.upload("spare values", blank);
     const Buffer state_buffer = gpu.upload("lists", states);
     const Buffer histograms(gpu.context(), "histograms", Sort::histogramBytes(longest));
     bool in_spare = false;
     gpu.run([&](Commands& commands) {
         for (std::size_t i = 0; i < lists.size(); ++i) {
-            const auto at = [&](const Buffer& buffer) { return buffer.address<gpu::uint>(begins[i] * sizeof(gpu::uint)); };
-            const KeyValues sorted = sort.record(kernels, commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
-                                                 histograms.address<gpu::uint>(), state_buffer, i * sizeof(gpu::ListState), key_bits);
+            const auto at = [&](const Buffer& buffer) {
+                return buffer.address<gpu::uint>(begins[i] * sizeof(gpu::uint));
+            };
+            const KeyValues sorted = sort.record(
+                kernels, commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
+                histograms.address<gpu::uint>(), state_buffer, i * sizeof(gpu::ListState), key_bits);
             in_spare = sorted.keys.value == at(spare_keys).value;
             CHECK(in_spare == Sort::endsInSpare(key_bits));
         }
     });
     const Values sorted_keys = gpu.readBack<std::uint32_t>(in_spare ? spare_keys : key_buffer, keys.size());
-    const Values sorted_values = gpu.readBack<std::uint32_t>(in_spare ? spare_values : value_buffer, keys.size());
+    const Values sorted_values =
+        gpu.readBack<std::uint32_t>(in_spare ? spare_values : value_buffer, keys.size());
     int wrong = 0;
     for (std::size_t i = 0; i < lists.size(); ++i) {
         const Values order = stableOrder(lists[i], key_bits);
-        bool right = sorted_keys[begins[i] + order.size()] == kUntouched && sorted_values[begins[i] + order.size()] == kUntouched;
+        bool right = sorted_keys[begins[i] + order.size()] == kUntouched &&
+                     sorted_values[begins[i] + order.size()] == kUntouched;
         for (std::size_t k = 0; k < order.size(); ++k) {
-            right = right && sorted_values[begins[i] + k] == order[k] && sorted_keys[begins[i] + k] == lists[i][order[k]];
+            right = right && sorted_values[begins[i] + k] == order[k] &&
+                    sorted_keys[begins[i] + k] == lists[i][order[k]];
         }
-        if (!right && wrong++ == 0) { MESSAGE("first wrong list: number " << i << ", of " << order.size() << " keys"); }
+        if (!right && wrong++ == 0) {
+            MESSAGE("first wrong list: number " << i << ", of " << order.size() << " keys");
+        }
     }
     return wrong;
 }
 
 // With every way to match digits that the device offers: real GPUs have wide subgroups and use ballots,
 // software devices compare.
-void checkSorted(Gpu& gpu, unsigned key_bits, const std::vector<std::size_t>& sizes, const std::vector<int>& patterns) {
+void checkSorted(Gpu& gpu, unsigned key_bits, const std::vector<std::size_t>& sizes,
+                 const std::vector<int>& patterns) {
     std::vector<DigitMatch> ways{DigitMatch::kBallots};
     if (Sort::hasNarrowSubgroups(gpu.context())) { ways.push_back(DigitMatch::kComparisons); }
     std::vector<Values> lists;
@@ -122,25 +134,30 @@ Summed sumUp(Gpu& gpu, const Values& values, std::uint32_t capacity = UINT32_MAX
     gpu.context().replacedShaders()["sum_up"].assign(std::begin(kSumUpWords), std::end(kSumUpWords));
     const Kernel& kernel = gpu.kernel("sum_up", sizeof(SumUpPass));
     const std::size_t count = values.size();
-    const Buffer buffer = gpu.upload("values", values), sums = gpu.upload("sums", Values(count + gpu::kSumRuns + 1, kUntouched));
+    const Buffer buffer = gpu.upload("values", values),
+                 sums = gpu.upload("sums", Values(count + gpu::kSumRuns + 1, kUntouched));
     const Buffer result = gpu.upload("result", std::vector{gpu::ListState{}});
-    const SumUpPass pass{buffer.address<gpu::uint>(), sums.address<gpu::uint>(), result.address<gpu::ListState>(),
-                         static_cast<gpu::uint>(count), capacity};
+    const SumUpPass pass{buffer.address<gpu::uint>(), sums.address<gpu::uint>(),
+                         result.address<gpu::ListState>(), static_cast<gpu::uint>(count), capacity};
     gpu.run([&](Commands& commands) {
         // Twice, since the last workgroup must restore the count of workgroups.
         commands.dispatchOver(kernel, pass, count, 1);
         commands.dispatchOver(kernel, pass, count, 1);
     });
-    return {gpu.readBack<std::uint32_t>(sums, count + gpu::kSumRuns + 1), gpu.readBack<gpu::ListState>(result, 1)[0]};
+    return {gpu.readBack<std::uint32_t>(sums, count + gpu::kSumRuns + 1),
+            gpu.readBack<gpu::ListState>(result, 1)[0]};
 }
 
-auto wordsOf(const gpu::ListState& list) { return std::bit_cast<std::array<std::uint32_t, sizeof(list) / 4>>(list); }
+auto wordsOf(const gpu::ListState& list) {
+    return std::bit_cast<std::array<std::uint32_t, sizeof(list) / 4>>(list);
+}
 
 void checkSums(Gpu& gpu, std::size_t count) {
     CAPTURE(count);
     std::mt19937 random(static_cast<unsigned>(count));
-    const std::size_t length =
-        count > gpu::kMostInOneRun && count <= gpu::kSumRuns * 0xffffu ? (count + gpu::kSumRuns - 1) / gpu::kSumRuns : count;
+    const std::size_t length = count > gpu::kMostInOneRun && count <= gpu::kSumRuns * 0xffffu
+                                   ? (count + gpu::kSumRuns - 1) / gpu::kSumRuns
+                                   : count;
     Values values, expected;
     std::uint32_t total = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -164,26 +181,36 @@ gpu::ListState listOfSum(Gpu& gpu, std::uint64_t sum, std::uint32_t capacity) {
     return sumUp(gpu, values, capacity).result;
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists of sizes round a subgroup, a group and a block are sorted, whatever their keys and the bits of these") {
+TEST_CASE_FIXTURE(Gpu,
+                  "lists of sizes round a subgroup, a group and a block are sorted, whatever their keys and "
+                  "the bits of these") {
     for (const unsigned key_bits : {32u, 27u, 14u, 9u, 1u}) {
-        checkSorted(*this, key_bits, {0, 1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 32, 33, 63, 64, 65, 127, 128, 129, 255, 256, 257, 600},
+        checkSorted(*this, key_bits, {0,  1,  2,  3,  4,  5,   7,   8,   9,   15,  16,  17, 31,
+                                      32, 33, 63, 64, 65, 127, 128, 129, 255, 256, 257, 600},
                     {kRandom});
-        checkSorted(*this, key_bits, {2, 127, 129, gpu::kSortBlock - 1, gpu::kSortBlock, gpu::kSortBlock + 1, 2 * gpu::kSortBlock + 3},
-                    {kRandom, kAllEqual, kFewDistinct, kAscending, kDescending, kExtremes});
+        checkSorted(
+            *this, key_bits,
+            {2, 127, 129, gpu::kSortBlock - 1, gpu::kSortBlock, gpu::kSortBlock + 1, 2 * gpu::kSortBlock + 3},
+            {kRandom, kAllEqual, kFewDistinct, kAscending, kDescending, kExtremes});
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "lists of more than one run of blocks, and of so many that blocks grow, are sorted") {
-    checkSorted(*this, 32, {gpu::kSortRun * gpu::kSortBlock + 1}, {kRandom, kAllEqual, kFewDistinct, kDescending});
+    checkSorted(*this, 32, {gpu::kSortRun * gpu::kSortBlock + 1},
+                {kRandom, kAllEqual, kFewDistinct, kDescending});
     checkSorted(*this, 12, {gpu::kMaxSortBlocks * gpu::kSortBlock + 1}, {kRandom});
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists of every size from 0 to 600, round 2^17 and of 2^21 keys are sorted" * nightly()) {
+TEST_CASE_FIXTURE(Gpu,
+                  "lists of every size from 0 to 600, round 2^17 and of 2^21 keys are sorted" * nightly()) {
     std::vector<std::size_t> sizes(601);
     std::iota(sizes.begin(), sizes.end(), std::size_t{0});
-    for (const unsigned key_bits : {32u, 27u, 14u, 9u, 1u}) { checkSorted(*this, key_bits, sizes, {kRandom}); }
+    for (const unsigned key_bits : {32u, 27u, 14u, 9u, 1u}) {
+        checkSorted(*this, key_bits, sizes, {kRandom});
+    }
     for (const unsigned key_bits : {32u, 14u}) {
-        checkSorted(*this, key_bits, {(1u << 17) - 1, 1u << 17, (1u << 17) + 1}, {kRandom, kAllEqual, kFewDistinct, kDescending});
+        checkSorted(*this, key_bits, {(1u << 17) - 1, 1u << 17, (1u << 17) + 1},
+                    {kRandom, kAllEqual, kFewDistinct, kDescending});
     }
     for (const unsigned key_bits : {32u, 12u}) { checkSorted(*this, key_bits, {1u << 21}, {kRandom}); }
 }
@@ -192,38 +219,47 @@ TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay a
     const Sort sort(context());
     KernelCache kernels(context(), sort.kernels());
     const Values keys{5, 4, 3, 2, 1};
-    const Buffer key_buffer = upload("keys", keys), values = upload("values", keys), spare_keys = upload("spare keys", keys),
-                 spare_values = upload("spare values", keys);
+    const Buffer key_buffer = upload("keys", keys), values = upload("values", keys),
+                 spare_keys = upload("spare keys", keys), spare_values = upload("spare values", keys);
     const Buffer lists = upload("lists", std::vector{test::makeList(5, 4)});
     const Buffer histograms(context(), "histograms", Sort::histogramBytes(5));
     run([&](Commands& commands) {
         sort.record(kernels, commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
-                    {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()}, histograms.address<gpu::uint>(), lists, 0, 32);
+                    {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()},
+                    histograms.address<gpu::uint>(), lists, 0, 32);
     });
-    CHECK(these(readBack<std::uint32_t>(key_buffer, 5), readBack<std::uint32_t>(spare_keys, 5)) == these(keys, keys));
+    CHECK(these(readBack<std::uint32_t>(key_buffer, 5), readBack<std::uint32_t>(spare_keys, 5)) ==
+          these(keys, keys));
 }
 
 TEST_CASE_FIXTURE(Gpu, "sums are right at every size across a boundary") {
-    for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 2049u, 4096u, 4097u, (1u << 17) + 1}) {
+    for (const std::size_t count :
+         {1u, 2u, 7u, 8u, 9u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 2049u, 4096u, 4097u, (1u << 17) + 1}) {
         checkSums(*this, count);
     }
 }
 
 // As many counts as two steps take, and one more: above 16.8 million splats, and above 268 million.
 TEST_CASE_FIXTURE(Gpu, "sums of millions are right" * nightly()) {
-    for (const std::size_t count : {gpu::kSumRuns * 0xffffu, gpu::kSumRuns * 0xffffu + 1}) { checkSums(*this, count); }
+    for (const std::size_t count : {gpu::kSumRuns * 0xffffu, gpu::kSumRuns * 0xffffu + 1}) {
+        checkSums(*this, count);
+    }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what it needs, and one beyond 31 bits is told as such") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a list of sums that does not fit is empty and says what it needs, and one beyond 31 bits "
+                  "is told as such") {
     for (const std::uint32_t capacity : {60u, 59u}) {
         const gpu::ListState list = sumUp(*this, {10, 20, 30}, capacity).result;
         CHECK(wordsOf(list) == wordsOf(test::makeList(60, capacity)));
-        CHECK(these(list.needed, list.count, (list.per_item.x == 0)) == these(60, (capacity == 60 ? 60 : 0), (capacity < 60)));
+        CHECK(these(list.needed, list.count, (list.per_item.x == 0)) ==
+              these(60, (capacity == 60 ? 60 : 0), (capacity < 60)));
     }
     // Just beyond the greatest index; beyond 2^32, where the sum modulo 2^32 is small; and several times
     // that.
-    for (const std::uint64_t total : {std::uint64_t{gpu::kMaxItems} + 1, std::uint64_t{UINT32_MAX} - 3, std::uint64_t{1} << 32,
-                                      (std::uint64_t{1} << 32) + 5, std::uint64_t{5} << 32, (std::uint64_t{9} << 32) + 77}) {
+    for (const std::uint64_t total :
+         {std::uint64_t{gpu::kMaxItems} + 1, std::uint64_t{UINT32_MAX} - 3, std::uint64_t{1} << 32,
+          (std::uint64_t{1} << 32) + 5, std::uint64_t{5} << 32, (std::uint64_t{9} << 32) + 77}) {
         CAPTURE(total);
         const gpu::ListState list = listOfSum(*this, total, UINT32_MAX - 1);
         CHECK(wordsOf(list) == wordsOf(test::makeList(UINT32_MAX, UINT32_MAX - 1)));
@@ -231,8 +267,11 @@ TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what 
     }
 }
 
-TEST_CASE("dispatches of the host fold so, too: of one workgroup more than a row holds, as of 16.8 million splats, hardly one is idle") {
-    for (const std::uint32_t groups : {1u, gpu::kMaxGroupsX, gpu::kMaxGroupsX + 1, 2 * gpu::kMaxGroupsX + 1, 4'194'304u}) {
+TEST_CASE(
+    "dispatches of the host fold so, too: of one workgroup more than a row holds, as of 16.8 million splats, "
+    "hardly one is idle") {
+    for (const std::uint32_t groups :
+         {1u, gpu::kMaxGroupsX, gpu::kMaxGroupsX + 1, 2 * gpu::kMaxGroupsX + 1, 4'194'304u}) {
         const vk::Extent2D rows = Commands::rowsOf(groups);
         CHECK(rows.width <= gpu::kMaxGroupsX);
         CHECK(rows.width * rows.height >= groups);
@@ -242,12 +281,14 @@ TEST_CASE("dispatches of the host fold so, too: of one workgroup more than a row
 
 TEST_CASE_FIXTURE(Gpu, "dispatches over a list fold into rows beyond the groups of one row") {
     constexpr std::uint32_t kRow = gpu::kMaxGroupsX * gpu::kGroupSize;
-    for (const std::uint32_t total : {kRow - 1, kRow, kRow + 1, gpu::kMaxGroupsX * gpu::kListBlock, gpu::kMaxGroupsX * gpu::kListBlock + 1,
-                                      2'147'000'000u, gpu::kMaxItems}) {
+    for (const std::uint32_t total :
+         {kRow - 1, kRow, kRow + 1, gpu::kMaxGroupsX * gpu::kListBlock,
+          gpu::kMaxGroupsX * gpu::kListBlock + 1, 2'147'000'000u, gpu::kMaxItems}) {
         CAPTURE(total);
         const gpu::ListState list = listOfSum(*this, total, UINT32_MAX);
         CHECK(wordsOf(list) == wordsOf(test::makeList(total, UINT32_MAX)));
-        for (const auto& [size, items] : {std::pair(list.per_item, gpu::kGroupSize), std::pair(list.per_block, gpu::kListBlock)}) {
+        for (const auto& [size, items] :
+             {std::pair(list.per_item, gpu::kGroupSize), std::pair(list.per_block, gpu::kListBlock)}) {
             CHECK(size.x <= gpu::kMaxGroupsX);
             CHECK(std::uint64_t{size.x} * size.y * items >= total);
             // No more groups without work than there are rows.

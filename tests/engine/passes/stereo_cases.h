@@ -44,7 +44,8 @@ inline StereoSettings settingsOf(const reference::StereoSettings& twin) {
 
 // A moving pixel and an arrival in the device's format: one word (shaders/lib/moving_pixel.glsl).
 inline gpu::uint packMoving(double inverse_depth, bool landed, gpu::uint spread) {
-    return ((((std::bit_cast<gpu::uint>(static_cast<float>(inverse_depth)) + 16) >> 5) + 1) << 6) | (landed ? 32u : 0u) | spread;
+    return ((((std::bit_cast<gpu::uint>(static_cast<float>(inverse_depth)) + 16) >> 5) + 1) << 6) |
+           (landed ? 32u : 0u) | spread;
 }
 inline gpu::uint packMoving(const std::optional<reference::MovingPixel>& pixel) {
     return pixel ? packMoving(pixel->inverse_depth, true, pixel->spread) : 0;
@@ -71,8 +72,10 @@ inline void roundToFloat(reference::Picture& picture) {
 inline void roundToWords(reference::Picture& picture, const reference::StereoSettings& settings) {
     roundToFloat(picture);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-        const reference::Arrival held = unpackArrival(packMoving(reference::movingPixel(picture, i, settings)));
-        const double weight = picture.rgba[i].w, w = held.inverse_depth, spread = reference::spreadOf(held.spread);
+        const reference::Arrival held =
+            unpackArrival(packMoving(reference::movingPixel(picture, i, settings)));
+        const double weight = picture.rgba[i].w, w = held.inverse_depth,
+                     spread = reference::spreadOf(held.spread);
         picture.depth[i] = held.way != reference::Arrival::kNone && w > 0.0 ? weight / w : -weight;
         picture.inverse_depth[i] = held.way != reference::Arrival::kNone ? weight * w : -weight;
         picture.inverse_depth_squared[i] = weight * w * w * (1.0 + spread * spread);
@@ -82,12 +85,16 @@ inline void roundToWords(reference::Picture& picture, const reference::StereoSet
 // Colours as the device's half floats store them, and back.
 inline std::vector<gpu::uvec2> packHalves(const std::vector<gpu::vec4>& colours) {
     std::vector<gpu::uvec2> halves;
-    for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
+    for (const gpu::vec4& c : colours) {
+        halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w}));
+    }
     return halves;
 }
 inline std::vector<gpu::vec4> unpackHalves(const std::vector<gpu::uvec2>& halves) {
     std::vector<gpu::vec4> colours;
-    for (const gpu::uvec2& packed : halves) { colours.emplace_back(glm::unpackHalf2x16(packed.x), glm::unpackHalf2x16(packed.y)); }
+    for (const gpu::uvec2& packed : halves) {
+        colours.emplace_back(glm::unpackHalf2x16(packed.x), glm::unpackHalf2x16(packed.y));
+    }
     return colours;
 }
 
@@ -100,12 +107,19 @@ inline void roundToHalves(reference::Picture& picture) {
             value = static_cast<double>(glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(value))));
         }
         const double scale = before > 0.0 ? picture.rgba[i].w / before : 1.0;
-        for (auto* plane : {&picture.depth, &picture.inverse_depth, &picture.inverse_depth_squared}) { (*plane)[i] *= scale; }
+        for (auto* plane : {&picture.depth, &picture.inverse_depth, &picture.inverse_depth_squared}) {
+            (*plane)[i] *= scale;
+        }
     }
 }
 
-inline StereoCase makeCase(const std::string& name, const Scene& scene, const std::array<Eye, 2>& eyes, Side dominant) {
-    StereoCase c{name + (dominant == kLeft ? ", from the left" : ", from the right"), scene, {eyes[dominant], eyes[1 - dominant]}, {}, {}};
+inline StereoCase makeCase(const std::string& name, const Scene& scene, const std::array<Eye, 2>& eyes,
+                           Side dominant) {
+    StereoCase c{name + (dominant == kLeft ? ", from the left" : ", from the right"),
+                 scene,
+                 {eyes[dominant], eyes[1 - dominant]},
+                 {},
+                 {}};
     c.dominant = reference::render(scene, c.eyes.source, {.inverse_depth_moments = true});
     roundToWords(c.dominant, c.settings);
     return c;
@@ -116,11 +130,16 @@ inline StereoCase makeCase(const std::string& name, const Scene& scene, const st
 inline const std::vector<StereoCase>& makeStereoCases() {
     static const std::vector<StereoCase> cases = [] {
         std::vector<StereoCase> made;
-        const auto add = [&](const std::string& name, const ViewedScene& view, const std::array<Eye, 2>& eyes) {
-            for (const Side dominant : {kLeft, kRight}) { made.push_back(makeCase(name, view.scene, eyes, dominant)); }
+        const auto add = [&](const std::string& name, const ViewedScene& view,
+                             const std::array<Eye, 2>& eyes) {
+            for (const Side dominant : {kLeft, kRight}) {
+                made.push_back(makeCase(name, view.scene, eyes, dominant));
+            }
         };
-        const ViewedScene room = viewBuiltin("builtin:atelier", {128, 96}, 20000), small = viewBuiltin("builtin:atelier", {17, 33}, 2000);
-        const ViewedScene fence = viewBuiltin("builtin:fence", {128, 96}), wide = viewBuiltin("builtin:fence", {531, 9});
+        const ViewedScene room = viewBuiltin("builtin:atelier", {128, 96}, 20000),
+                          small = viewBuiltin("builtin:atelier", {17, 33}, 2000);
+        const ViewedScene fence = viewBuiltin("builtin:fence", {128, 96}),
+                          wide = viewBuiltin("builtin:fence", {531, 9});
         add("room", room, stereoPair(room.eye, 0.063));
         add("room, asymmetric", room, headsetEyes(room.eye, 0.0));
         add("room, canted", room, headsetEyes(room.eye, glm::radians(5.0)));
@@ -135,10 +154,15 @@ inline const std::vector<StereoCase>& makeStereoCases() {
     return cases;
 }
 
-inline std::vector<gpu::vec4> coloursOf(const reference::Picture& picture) { return {picture.rgba.begin(), picture.rgba.end()}; }
-inline std::vector<gpu::uint> movingOf(const reference::Picture& picture, const reference::StereoSettings& settings) {
+inline std::vector<gpu::vec4> coloursOf(const reference::Picture& picture) {
+    return {picture.rgba.begin(), picture.rgba.end()};
+}
+inline std::vector<gpu::uint> movingOf(const reference::Picture& picture,
+                                       const reference::StereoSettings& settings) {
     std::vector<gpu::uint> words;
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { words.push_back(packMoving(reference::movingPixel(picture, i, settings))); }
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        words.push_back(packMoving(reference::movingPixel(picture, i, settings)));
+    }
     return words;
 }
 
@@ -181,7 +205,9 @@ struct Arrived {
     std::vector<reference::Arrival> arrivals;
 };
 
-inline std::size_t tileCount(glm::uvec2 size_px) { return std::size_t{tilesOf(size_px).x} * tilesOf(size_px).y; }
+inline std::size_t tileCount(glm::uvec2 size_px) {
+    return std::size_t{tilesOf(size_px).x} * tilesOf(size_px).y;
+}
 inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
     return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }
@@ -189,7 +215,9 @@ inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
 // What weigh tells newcomers about each tile.
 inline std::vector<gpu::uint> depthsOfTiles(const StereoCase& c) {
     std::vector<gpu::uint> depths(std::size_t{(c.sizePx().x + 15) / 16} * ((c.sizePx().y + 15) / 16));
-    for (std::size_t t = 0; t < depths.size(); ++t) { depths[t] = packMoving(reference::movingAtMiddle(c.dominant, t, c.settings)); }
+    for (std::size_t t = 0; t < depths.size(); ++t) {
+        depths[t] = packMoving(reference::movingAtMiddle(c.dominant, t, c.settings));
+    }
     return depths;
 }
 
@@ -200,6 +228,8 @@ inline std::vector<reference::TileKind> markSome(std::size_t tiles) {
     return kinds;
 }
 
-inline double share(std::size_t part, std::size_t whole) { return static_cast<double>(part) / static_cast<double>(whole); }
+inline double share(std::size_t part, std::size_t whole) {
+    return static_cast<double>(part) / static_cast<double>(whole);
+}
 
 }  // namespace binosplat::test

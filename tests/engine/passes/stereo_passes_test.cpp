@@ -51,7 +51,9 @@ void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
             c.settings.gap_px = gap_px;
             c.settings.forward = forward;
             c.settings.source_hidden.assign(hides ? test::tileCount(c.sizePx()) : 0, 0);
-            for (std::size_t t = 1; t < c.settings.source_hidden.size(); t += 5) { c.settings.source_hidden[t] = 1; }
+            for (std::size_t t = 1; t < c.settings.source_hidden.size(); t += 5) {
+                c.settings.source_hidden[t] = 1;
+            }
             StereoOnDevice device = toDevice(gpu, c, rows);
             device.reproject(hides, forward);
             const auto expected = reference::reproject(c.dominant, c.eyes, c.settings);
@@ -89,20 +91,24 @@ struct Newcomers {
 Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKind>& kinds) {
     const reference::Settings settings;
     const auto visible = reference::cull(c.scene, std::array{c.eyes.source, c.eyes.target}, settings);
-    const auto order = reference::sortDepth(reference::compact(c.scene, visible, c.eyes.source, settings), settings);
+    const auto order =
+        reference::sortDepth(reference::compact(c.scene, visible, c.eyes.source, settings), settings);
     const auto source = reference::project(c.scene, order, c.eyes.source, settings),
                target = reference::project(c.scene, order, c.eyes.target, settings);
-    const auto source_pairs = reference::bin(source, c.sizePx(), settings), target_pairs = reference::bin(target, c.sizePx(), settings);
+    const auto source_pairs = reference::bin(source, c.sizePx(), settings),
+               target_pairs = reference::bin(target, c.sizePx(), settings);
     StereoOnDevice device = toDevice(gpu, c);
     std::vector<double> expected(device.tileCount(), 0.0);
     Newcomers newcomers{};
-    newcomers.expected = reference::addNewcomers(expected, target, target_pairs, source_pairs, c.dominant, kinds, c.settings);
+    newcomers.expected =
+        reference::addNewcomers(expected, target, target_pairs, source_pairs, c.dominant, kinds, c.settings);
 
     device.writeTileDepths(test::depthsOfTiles(c));
     device.writeTileKinds(test::kindsOf(kinds));
     std::vector<gpu::uint> source_tiles(order.size(), 0);
     for (const reference::TilePair& pair : source_pairs) { ++source_tiles[pair.splat]; }
-    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {c.eyes.source, c.eyes.target}, settings.near), order, source_tiles);
+    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {c.eyes.source, c.eyes.target}, settings.near),
+                        order, source_tiles);
     newcomers.found = device.readCounters().newcomers;
     const auto errors = device.readTileErrors();
     for (std::size_t t = 0; t < errors.size(); ++t) {
@@ -119,8 +125,10 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
 
 // The number of newcomers among these splats, for an eye and one in its place, and the tiles' errors
 // including what they add.
-std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px, const std::vector<test::Splat>& splats,
-                                                   const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds,
+std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
+                                                   const std::vector<test::Splat>& splats,
+                                                   const std::vector<gpu::uint>& depths,
+                                                   const std::vector<gpu::uint>& kinds,
                                                    const std::vector<gpu::uint>& errors) {
     const Eye eye = test::makeEye(size_px);
     StereoCase c{"splats", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
@@ -131,18 +139,22 @@ std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
     device.writeTileDepths(depths);
     device.writeTileKinds(kinds);
     device.writeTileErrors(errors);
-    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order, std::vector<gpu::uint>(splats.size(), 0));
+    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order,
+                        std::vector<gpu::uint>(splats.size(), 0));
     return {device.readCounters().newcomers, device.readTileErrors()};
 }
 
-TEST_CASE_FIXTURE(Gpu, "reproject brings to each pixel what the twin brings there, and nothing from beside what a lens hides") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "reproject brings to each pixel what the twin brings there, and nothing from beside what a lens hides") {
     checkReproject(*this, {{0, false, Rows::kOwn},
                            {2, false, Rows::kShared, true},
                            {5, false, Rows::kSharedHalves},
                            {20, false, Rows::kOwn},
                            {2, true, Rows::kShared}});
 }
-TEST_CASE_FIXTURE(Gpu, "reproject does so with any gap, forward or not, in rows of any kind" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu,
+                  "reproject does so with any gap, forward or not, in rows of any kind" * test::nightly()) {
     std::vector<Way> ways;
     for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
         for (const int gap_px : {0, 2, 5, 20}) { ways.push_back({gap_px, false, rows, gap_px == 2}); }
@@ -160,7 +172,8 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
     StereoCase c{"stretch",
                  {},
                  {eyes[kLeft], eyes[kRight]},
-                 {size_px, std::vector(40, glm::dvec4(1.0)), std::vector(40, 0.0), std::vector(40, 9.0), std::vector(40, 0.0)},
+                 {size_px, std::vector(40, glm::dvec4(1.0)), std::vector(40, 0.0), std::vector(40, 9.0),
+                  std::vector(40, 0.0)},
                  {}};
     c.dominant.inverse_depth[5] = 1.75;
     c.dominant.inverse_depth[6] = 0.03;
@@ -184,12 +197,15 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's errors") {
-    const test::ViewedScene room = test::viewBuiltin("builtin:atelier", {128, 96}, 20000), cloud = test::viewCloud({128, 96});
-    const test::ViewedScene gaussians = test::viewGaussians({128, 96}, false), dimmed = test::viewGaussians({128, 96}, true);
-    for (const auto& [view, eyes] :
-         {std::pair(&room, test::headsetEyes(room.eye, 0.0)), std::pair(&room, test::headsetEyes(room.eye, glm::radians(5.0))),
-          std::pair(&cloud, stereoPair(cloud.eye, 0.2)), std::pair(&gaussians, stereoPair(gaussians.eye, 0.2)),
-          std::pair(&dimmed, stereoPair(dimmed.eye, 0.2))}) {
+    const test::ViewedScene room = test::viewBuiltin("builtin:atelier", {128, 96}, 20000),
+                            cloud = test::viewCloud({128, 96});
+    const test::ViewedScene gaussians = test::viewGaussians({128, 96}, false),
+                            dimmed = test::viewGaussians({128, 96}, true);
+    for (const auto& [view, eyes] : {std::pair(&room, test::headsetEyes(room.eye, 0.0)),
+                                     std::pair(&room, test::headsetEyes(room.eye, glm::radians(5.0))),
+                                     std::pair(&cloud, stereoPair(cloud.eye, 0.2)),
+                                     std::pair(&gaussians, stereoPair(gaussians.eye, 0.2)),
+                                     std::pair(&dimmed, stereoPair(dimmed.eye, 0.2))}) {
         for (const Side dominant : {kLeft, kRight}) {
             for (const bool whole : {false, true}) {
                 Scene scene = view->scene;
@@ -208,7 +224,8 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
                 CHECK(newcomers.found >= newcomers.expected);
                 CHECK(newcomers.error >= 0.95 * newcomers.expected_error);
                 if (!whole) {
-                    CHECK(static_cast<double>(newcomers.found) <= 1.1 * static_cast<double>(newcomers.expected) + 2.0);
+                    CHECK(static_cast<double>(newcomers.found) <=
+                          1.1 * static_cast<double>(newcomers.expected) + 2.0);
                     CHECK(newcomers.difference <= 0.08 * newcomers.expected_error + 0.1);
                 }
             }
@@ -216,12 +233,17 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brings to every tile it meets, up to what a sum holds") {
+TEST_CASE_FIXTURE(Gpu,
+                  "newcomers adds what a large splat near a canted eye brings to every tile it meets, up to "
+                  "what a sum holds") {
     // Eyes that look past each other, and in front of one of them discs over nearly all of its 40x35 tiles.
     const glm::uvec2 size_px(640, 560);
-    const auto turnBy = [](double degrees) { return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 1.0, 0.0)); };
+    const auto turnBy = [](double degrees) {
+        return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 1.0, 0.0));
+    };
     const auto eyeAt = [&](double x, double degrees) {
-        return Eye{{turnBy(degrees), {x, 0.0, 0.0}}, intrinsicsFromFovX(glm::radians(20.0), size_px), size_px};
+        return Eye{
+            {turnBy(degrees), {x, 0.0, 0.0}}, intrinsicsFromFovX(glm::radians(20.0), size_px), size_px};
     };
     const std::array eyes{eyeAt(-0.03, -12.0), eyeAt(0.03, 12.0)};
     struct Large {
@@ -231,14 +253,18 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brin
         std::size_t least_tiles, most_tiles;
     };
     // About as many tiles as one thread still handles, and nearly all.
-    for (const Large& large : {Large{0.004f, 1, 0.3, 30, 64}, Large{0.006f, 2, 0.3, 65, 150}, Large{0.03f, 1, 0.3, 1025, 1400},
-                               Large{0.03f, 1, 8.0, 1025, 1400}, Large{0.03f, 3, 8.0, 1025, 1400}}) {
+    for (const Large& large :
+         {Large{0.004f, 1, 0.3, 30, 64}, Large{0.006f, 2, 0.3, 65, 150}, Large{0.03f, 1, 0.3, 1025, 1400},
+          Large{0.03f, 1, 8.0, 1025, 1400}, Large{0.03f, 3, 8.0, 1025, 1400}}) {
         INFO("large.scale ", large.scale, ", large.newcomer error ", large.newcomer_error);
-        const test::Splat splat{glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)), glm::quat(turnBy(12.0)),
-                                glm::vec2(large.scale), 0.9f, glm::vec3(0.5f)};
-        StereoCase c = test::makeCase("large", test::makeScene(std::vector(large.splats, splat)), eyes, kLeft);
+        const test::Splat splat{
+            glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)),
+            glm::quat(turnBy(12.0)), glm::vec2(large.scale), 0.9f, glm::vec3(0.5f)};
+        StereoCase c =
+            test::makeCase("large", test::makeScene(std::vector(large.splats, splat)), eyes, kLeft);
         c.settings.newcomer_error = large.newcomer_error;
-        const Newcomers newcomers = findNewcomers(*this, c, std::vector(std::size_t{40} * 35, TileKind::kNone));
+        const Newcomers newcomers =
+            findNewcomers(*this, c, std::vector(std::size_t{40} * 35, TileKind::kNone));
         CHECK(newcomers.expected == large.splats);
         CHECK(newcomers.found == large.splats);
         CHECK(newcomers.tiles >= large.least_tiles);
@@ -250,17 +276,24 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brin
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
     // Small discs of inverse depth 1/3 along the middle row. The first two share a tile, and the second
     // reaches beyond it.
     const glm::uvec2 size_px(64, 16);
     std::vector<test::Splat> splats;
     for (const double column : {6.5, 14.5, 24.5, 33.5, 56.5}) {
-        splats.push_back({{(column - 32.0) * 3.0 / 100.0, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.02f), 0.9f, glm::vec3(0.5f)});
+        splats.push_back({{(column - 32.0) * 3.0 / 100.0, 0.0f, 3.0f},
+                          {1, 0, 0, 0},
+                          glm::vec2(0.02f),
+                          0.9f,
+                          glm::vec3(0.5f)});
     }
     const gpu::uint near = test::packMoving(0.5, true, 0), far = test::packMoving(0.25, true, 0), nothing = 0;
     const auto found = [&](const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds) {
-        const auto [count, errors] = addTo(*this, size_px, splats, depths, kinds, std::vector<gpu::uint>(4, 0));
+        const auto [count, errors] =
+            addTo(*this, size_px, splats, depths, kinds, std::vector<gpu::uint>(4, 0));
         std::string tiles = std::to_string(count);
         for (const gpu::uint error : errors) { tiles += error > 0 ? 'x' : '.'; }
         return tiles;
@@ -271,9 +304,11 @@ TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, 
     CHECK(found({nothing, nothing, nothing, nothing}, {0, 0, 0, 0}) == "5xxxx");
 }
 
-TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
+TEST_CASE_FIXTURE(Gpu,
+                  "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
     // A thousand discs in front of one tile, each of which alone adds more than remains.
-    const std::vector<test::Splat> splats(1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
+    const std::vector<test::Splat> splats(
+        1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
     for (const gpu::uint before : {0x7ffffff0u, 0x7fffffffu, 0x7fff0000u}) {
         const auto [count, errors] = addTo(*this, {16, 16}, splats, {0}, {0}, {before});
         CHECK(count == splats.size());
@@ -286,7 +321,8 @@ struct Likeness {
     double coverage, covered_db, db;
 };
 // From a picture that is moved by a disparity per pixel, 0 where that is unknown, to what another eye saw.
-Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disparity_px, const Image& truth, gpu::uint gap_px) {
+Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disparity_px, const Image& truth,
+                    gpu::uint gap_px) {
     // Eyes side by side with fx b = 1 px, so the inverse depth is the disparity in pixels.
     gpu::WarpView view{};
     view.rows_apart = 1;
@@ -300,24 +336,31 @@ Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disp
     for (std::size_t i = 0; i < from.pixelCount(); ++i) {
         const float* rgb = &from.values[i * static_cast<std::size_t>(from.channels)];
         colours.emplace_back(rgb[0], rgb[1], rgb[2], 1.0f);
-        moving.push_back(disparity_px[i] > 0.0 ? test::packMoving(disparity_px[i], /*landed=*/true, /*spread=*/0) : 0);
+        moving.push_back(
+            disparity_px[i] > 0.0 ? test::packMoving(disparity_px[i], /*landed=*/true, /*spread=*/0) : 0);
     }
     StereoOnDevice device(gpu, view, colours, moving, Rows::kShared);
     device.reproject();
     device.resample({.classes = true});
     const auto classes = device.readClasses();
     Image made{from.size_px, 3, {}};
-    for (const gpu::vec4& pixel : device.readAffiliated()) { made.values.insert(made.values.end(), {pixel.x, pixel.y, pixel.z}); }
-    const double db = compare(made, truth).psnrDb(), coverage = test::share(std::ranges::count(classes, gpu::kCovered), classes.size());
+    for (const gpu::vec4& pixel : device.readAffiliated()) {
+        made.values.insert(made.values.end(), {pixel.x, pixel.y, pixel.z});
+    }
+    const double db = compare(made, truth).psnrDb(),
+                 coverage = test::share(std::ranges::count(classes, gpu::kCovered), classes.size());
     for (std::size_t i = 0; i < made.values.size(); ++i) {
         const std::size_t pixel = i / 3;
-        if (classes[pixel] != gpu::kCovered) { made.values[i] = truth.values[pixel * static_cast<std::size_t>(truth.channels) + i % 3]; }
+        if (classes[pixel] != gpu::kCovered) {
+            made.values[i] = truth.values[pixel * static_cast<std::size_t>(truth.channels) + i % 3];
+        }
     }
     return {coverage, compare(made, truth).psnrDb() + 10.0 * std::log10(coverage), db};
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "a real picture moved by its true disparity is the other eye's, better than by whole pixels; moved the wrong way it is "
+                  "a real picture moved by its true disparity is the other eye's, better than by whole "
+                  "pixels; moved the wrong way it is "
                   "no likeness, and infinitely far away it keeps its bytes" *
                       test::needsSharedData() * test::nightly()) {
     const auto data = test::sharedData();
@@ -331,9 +374,11 @@ TEST_CASE_FIXTURE(Gpu,
         REQUIRE(left.size_px == glm::uvec2(450, 375));
         std::vector<double> disparity_px;
         for (std::size_t i = 0; i < read.pixelCount(); ++i) {
-            disparity_px.push_back(static_cast<double>(read.values[i * static_cast<std::size_t>(read.channels)]) * 255.0 / 4.0);
+            disparity_px.push_back(
+                static_cast<double>(read.values[i * static_cast<std::size_t>(read.channels)]) * 255.0 / 4.0);
         }
-        const Likeness landed = likenessOf(*this, left, disparity_px, right, 0), filled = likenessOf(*this, left, disparity_px, right, 2);
+        const Likeness landed = likenessOf(*this, left, disparity_px, right, 0),
+                       filled = likenessOf(*this, left, disparity_px, right, 2);
         CHECK(std::min(landed.covered_db, filled.covered_db) >= least_db);
         CHECK(std::min(landed.coverage, filled.coverage) >= 0.77);
         CHECK(filled.db >= landed.db);

@@ -13,7 +13,9 @@ inline bool isShared(Rows rows) { return rows == Rows::kShared || rows == Rows::
 inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Rows::kSharedHalves; }
 
 // The longest row that resample keeps in shared memory.
-inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
+inline std::uint32_t longestSharedRow(const Context& context) {
+    return mostRowSteps(context) * gpu::kArrivalsStep;
+}
 
 // The arrays of the passes of warp and choose. Each call runs one pass; between calls, every array can be
 // read or replaced. Arrays that a pass must write start as kUnwritten.
@@ -21,14 +23,15 @@ class StereoOnDevice {
 public:
     static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
 
-    StereoOnDevice(Gpu& gpu, const gpu::WarpView& view, const std::vector<gpu::vec4>& colours, const std::vector<gpu::uint>& moving,
-                   Rows rows = Rows::kOwn, std::uint32_t boxes = 64)
+    StereoOnDevice(Gpu& gpu, const gpu::WarpView& view, const std::vector<gpu::vec4>& colours,
+                   const std::vector<gpu::uint>& moving, Rows rows = Rows::kOwn, std::uint32_t boxes = 64)
         : gpu_(gpu),
           rows_(rows),
           view_(withRows(view, rows)),
           view_buffer_(gpu.upload("stereo view", std::vector{view_})),
           counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
-          colours_(areHalves(rows) ? gpu.upload("dominant colours", packHalves(colours)) : gpu.upload("dominant colours", colours)),
+          colours_(areHalves(rows) ? gpu.upload("dominant colours", packHalves(colours))
+                                   : gpu.upload("dominant colours", colours)),
           affiliated_(gpu.allocate<gpu::uint>("affiliated colours", wordsPerPixel() * pixelCount())),
           depths_(gpu.allocate<gpu::uint>("affiliated depths", pixelCount())),
           classes_(gpu.allocate<gpu::uint>("classes", std::size_t{view.size_tiles.x} * view.size_px.y)),
@@ -55,7 +58,8 @@ public:
 
     // `ranges`: of the dominant eye's pairs. Arrays that the pass must clear are not clear before.
     // `may_move`: the dominant eye left what moving needs.
-    void weigh(const std::vector<reference::TileRange>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
+    void weigh(const std::vector<reference::TileRange>& ranges, bool hidden_tiles,
+               std::size_t visible_count = 0, bool may_move = true) {
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
@@ -97,13 +101,18 @@ public:
     }
     void reproject(bool hidden_tiles = false, bool forward = false) {
         dispatch(ReprojectKernel{.rectified = rectified(), .forward = forward},
-                 gpu::ReprojectPass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = shownMask(hidden_tiles)},
+                 gpu::ReprojectPass{.warp = view(),
+                                    .moving = moving(),
+                                    .arrivals = arrivals(),
+                                    .shown_mask = shownMask(hidden_tiles)},
                  pixelGroups());
     }
     // Splats in `order` as `scene` holds them, with what the dominant eye's project counted for each; eye 1
     // is the affiliated one.
-    void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
-        const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
+    void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order,
+                      const std::vector<gpu::uint>& dominant_tiles) {
+        const Buffer order_buffer = gpu_.upload("order", order),
+                     count_buffer = gpu_.upload("dominant counts", dominant_tiles);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
         dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
@@ -135,35 +144,39 @@ public:
     void resample(const ResampleParts& parts) {
         const bool whole = parts.errors && !parts.classes && !parts.hidden_tiles;
         const gpu::uint moved = whole ? gpu::kWholeRowMoved : gpu::kRowMoved;
-        const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven : parts.moves_row ? moved : gpu::kArrivalsGiven;
+        const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven
+                                     : parts.moves_row             ? moved
+                                                                   : gpu::kArrivalsGiven;
         const std::uint32_t width = view_.size_px.x;
         const bool shares = row_source != gpu::kPlacesGiven && width <= longestSharedRow(gpu_.context());
         const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
-        dispatch(ResampleKernel{.rectified = rectified(),
-                                .row_steps = row_steps,
-                                .half_colours = areHalves(rows_),
-                                .row_source = row_source,
-                                .way = parts.classes   ? gpu::kDoesAny
-                                       : parts.errors  ? gpu::kPredicts
-                                       : parts.forward ? gpu::kCopies
-                                                       : gpu::kSamples},
-                 gpu::ResamplePass{.warp = view(),
-                                   .source = colours_.address<gpu::vec4>(),
-                                   .half_source = colours_.address<gpu::uvec2>(),
-                                   .moving = parts.moves_row ? moving() : arrivals(),
-                                   .target = affiliated_.address<gpu::vec4>(),
-                                   .half_target = affiliated_.address<gpu::uvec2>(),
-                                   .depths = parts.depths ? depths_.address<float>() : gpu::DeviceAddress<float>{},
-                                   .tile_kinds = words(tile_kinds_),
-                                   .tile_errors = parts.errors || parts.odd ? words(tile_errors_) : gpu::DeviceAddress<gpu::uint>{},
-                                   .pixel_classes = words(classes_),
-                                   .counters = counters(),
-                                   .shown_mask = shownMask(parts.hidden_tiles),
-                                   .background = parts.background,
-                                   .first_row = parts.odd ? 1u : 0u,
-                                   .copies_colours = parts.forward ? 1u : 0u,
-                                   .groups_holes = parts.components ? 1u : 0u},
-                 {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
+        dispatch(
+            ResampleKernel{.rectified = rectified(),
+                           .row_steps = row_steps,
+                           .half_colours = areHalves(rows_),
+                           .row_source = row_source,
+                           .way = parts.classes   ? gpu::kDoesAny
+                                  : parts.errors  ? gpu::kPredicts
+                                  : parts.forward ? gpu::kCopies
+                                                  : gpu::kSamples},
+            gpu::ResamplePass{.warp = view(),
+                              .source = colours_.address<gpu::vec4>(),
+                              .half_source = colours_.address<gpu::uvec2>(),
+                              .moving = parts.moves_row ? moving() : arrivals(),
+                              .target = affiliated_.address<gpu::vec4>(),
+                              .half_target = affiliated_.address<gpu::uvec2>(),
+                              .depths = parts.depths ? depths_.address<float>() : gpu::DeviceAddress<float>{},
+                              .tile_kinds = words(tile_kinds_),
+                              .tile_errors = parts.errors || parts.odd ? words(tile_errors_)
+                                                                       : gpu::DeviceAddress<gpu::uint>{},
+                              .pixel_classes = words(classes_),
+                              .counters = counters(),
+                              .shown_mask = shownMask(parts.hidden_tiles),
+                              .background = parts.background,
+                              .first_row = parts.odd ? 1u : 0u,
+                              .copies_colours = parts.forward ? 1u : 0u,
+                              .groups_holes = parts.components ? 1u : 0u},
+            {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
     }
     // All steps of the pass, whatever the counters say about holes.
     void findComponents() {
@@ -175,7 +188,9 @@ public:
                                        .counters = counters(),
                                        .box_capacity = box_capacity_,
                                        .slots_apart = areHalves(rows_) ? 1u : 2u};
-        for (std::uint32_t step = 0; step < 3; ++step) { dispatch(ComponentsKernel{.step = step}, pass, pixelGroups()); }
+        for (std::uint32_t step = 0; step < 3; ++step) {
+            dispatch(ComponentsKernel{.step = step}, pass, pixelGroups());
+        }
         dispatch(ComponentsKernel{.step = 3}, pass, {3, 1});
     }
 
@@ -195,21 +210,36 @@ public:
     // Bytes of a pixel's colour.
     [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
     [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
-    [[nodiscard]] gpu::WarpCounters readCounters() { return gpu_.readBack<gpu::WarpCounters>(counters_, 1)[0]; }
-    [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return gpu_.readBack<gpu::uint>(tile_errors_, tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readTileDepths() { return gpu_.readBack<gpu::uint>(tile_depths_, tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readTileCosts() { return gpu_.readBack<gpu::uint>(tile_costs_, tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readTileMask() { return gpu_.readBack<gpu::uint>(tile_mask_, maskWords()); }
+    [[nodiscard]] gpu::WarpCounters readCounters() {
+        return gpu_.readBack<gpu::WarpCounters>(counters_, 1)[0];
+    }
+    [[nodiscard]] std::vector<gpu::uint> readTileErrors() {
+        return gpu_.readBack<gpu::uint>(tile_errors_, tileCount());
+    }
+    [[nodiscard]] std::vector<gpu::uint> readTileDepths() {
+        return gpu_.readBack<gpu::uint>(tile_depths_, tileCount());
+    }
+    [[nodiscard]] std::vector<gpu::uint> readTileKinds() {
+        return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount());
+    }
+    [[nodiscard]] std::vector<gpu::uint> readTileCosts() {
+        return gpu_.readBack<gpu::uint>(tile_costs_, tileCount());
+    }
+    [[nodiscard]] std::vector<gpu::uint> readTileMask() {
+        return gpu_.readBack<gpu::uint>(tile_mask_, maskWords());
+    }
     // Depths, or prices.
-    [[nodiscard]] std::vector<gpu::uint> readBins() { return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins); }
+    [[nodiscard]] std::vector<gpu::uint> readBins() {
+        return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins);
+    }
     [[nodiscard]] std::vector<std::uint8_t> readClasses() {
         const std::size_t row_words = view_.size_tiles.x;
         const auto packed = gpu_.readBack<gpu::uint>(classes_, row_words * view_.size_px.y);
         std::vector<std::uint8_t> classes;
         for (std::size_t y = 0; y < view_.size_px.y; ++y) {
             for (std::size_t x = 0; x < view_.size_px.x; ++x) {
-                classes.push_back(static_cast<std::uint8_t>((packed[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
+                classes.push_back(
+                    static_cast<std::uint8_t>((packed[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
             }
         }
         return classes;
@@ -249,7 +279,9 @@ public:
         return alongRows(view_.target_from_source) && alongRows(view_.source_from_target) ? 1 : 0;
     }
     [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }
-    [[nodiscard]] std::size_t tileCount() const { return std::size_t{view_.size_tiles.x} * view_.size_tiles.y; }
+    [[nodiscard]] std::size_t tileCount() const {
+        return std::size_t{view_.size_tiles.x} * view_.size_tiles.y;
+    }
 
 private:
     static gpu::WarpView withRows(gpu::WarpView view, Rows rows) {
@@ -261,17 +293,27 @@ private:
         counters.moves = 1;
         return counters;
     }
-    [[nodiscard]] std::size_t maskWords() const { return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y; }
+    [[nodiscard]] std::size_t maskWords() const {
+        return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y;
+    }
     static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kWarpGroup) {
         return static_cast<std::uint32_t>((items + group_items - 1) / group_items);
     }
     [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
     [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }
 
-    [[nodiscard]] static gpu::DeviceAddress<gpu::uint> words(const Buffer& buffer) { return buffer.address<gpu::uint>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::WarpView> view() const { return view_buffer_.address<gpu::WarpView>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::WarpCounters> counters() const { return counters_.address<gpu::WarpCounters>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const { return !isShared(rows_) ? words(arrivals_) : words(affiliated_); }
+    [[nodiscard]] static gpu::DeviceAddress<gpu::uint> words(const Buffer& buffer) {
+        return buffer.address<gpu::uint>();
+    }
+    [[nodiscard]] gpu::DeviceAddress<gpu::WarpView> view() const {
+        return view_buffer_.address<gpu::WarpView>();
+    }
+    [[nodiscard]] gpu::DeviceAddress<gpu::WarpCounters> counters() const {
+        return counters_.address<gpu::WarpCounters>();
+    }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const {
+        return !isShared(rows_) ? words(arrivals_) : words(affiliated_);
+    }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving() const {
         return !isShared(rows_) ? words(moving_) : words(affiliated_).at(view_.size_px.x);
     }
@@ -283,7 +325,9 @@ private:
     }
     void fill(std::initializer_list<const Buffer*> buffers, gpu::uint value) {
         gpu_.run([&](Commands& commands) {
-            for (const Buffer* buffer : buffers) { commands.buffer().fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, value); }
+            for (const Buffer* buffer : buffers) {
+                commands.buffer().fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, value);
+            }
         });
     }
     // The first or the second part of each row of colours, with a word per pixel.
@@ -324,7 +368,8 @@ private:
 };
 
 inline gpu::WarpView viewOfCase(const StereoCase& c) {
-    gpu::WarpView view = warpViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
+    gpu::WarpView view =
+        warpViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
     view.rows_apart = 1;  // until takeRowsApart
     return view;
 }

@@ -35,7 +35,8 @@ Mask drawMask(glm::uvec2 size_px, const auto& isHole) {
 
 // Compares components with the twin's flood fill, on a mask of holes, none of them in tiles that were marked
 // before. Returns how many there are.
-std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
+std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px,
+                            std::uint32_t boxes, bool edges) {
     // Half floats and floats in turn.
     const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
     const std::size_t words_per_pixel = areHalves(rows) ? 2 : 4;
@@ -47,7 +48,9 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     // As resample leaves them: holes are their own parents, and everything else is a colour.
     std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
     for (std::size_t i = 0; i < mask.size(); ++i) {
-        const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole : i % 5 == 0 ? PixelClass::kGap : PixelClass::kCovered;
+        const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole
+                                       : i % 5 == 0 ? PixelClass::kGap
+                                                    : PixelClass::kCovered;
         resolved.push_back({pixel_class, static_cast<std::uint32_t>(i % size_px.x), 0.5, 0});
         const bool moved = kinds[test::tileOf(i, size_px)] == TileKind::kNone;
         classes.push_back(moved ? static_cast<std::uint8_t>(pixel_class) : 0);
@@ -67,15 +70,21 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     // Except for the holes, nothing has changed.
     auto after = device.readAffiliatedWords();
     for (std::size_t i = 0; i < words.size(); ++i) {
-        if (classes[i / words_per_pixel] == static_cast<std::uint8_t>(PixelClass::kHole)) { after[i] = words[i]; }
+        if (classes[i / words_per_pixel] == static_cast<std::uint8_t>(PixelClass::kHole)) {
+            after[i] = words[i];
+        }
     }
     CHECK(after == words);
     return components;
 }
 
-TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
+TEST_CASE_FIXTURE(Gpu,
+                  "depth_bounds counts depths beyond its range as the last, and pixels of little weight or "
+                  "no depth not at all") {
     StereoCase c = makePlainCase({20, 10});
-    for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) { c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5; }
+    for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
+        c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5;
+    }
     const std::array<double, 5> inverse_depths{1.0, 1e-9, 1e9, 0.25, -1.0};
     for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
         c.dominant.inverse_depth[i] = c.dominant.rgba[i].w * inverse_depths[i / 2 % 5];
@@ -129,7 +138,9 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     // last tile has four columns.
     const auto columns = [](const Borders& borders, glm::uvec2 size_px) {
         std::string row;
-        for (const TileKind kind : reference::markEdges(borders, size_px)) { row += kind == TileKind::kEdge ? 'e' : '.'; }
+        for (const TileKind kind : reference::markEdges(borders, size_px)) {
+            row += kind == TileKind::kEdge ? 'e' : '.';
+        }
         return row;
     };
     CHECK(columns({35, 0, 1, 0}, {128, 16}) == "eee....e");
@@ -138,7 +149,8 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
 }
 
-TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and of these edge_rois finds the twin's borders and tiles") {
+TEST_CASE_FIXTURE(
+    Gpu, "depth_bounds counts the twin's depths, and of these edge_rois finds the twin's borders and tiles") {
     std::uint32_t all_flips = 0;
     for (StereoCase c : test::makeStereoCases()) {
         std::vector<gpu::uint> bins;
@@ -150,8 +162,11 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and of these edge
             bins = device.readBins();
             const auto expected = reference::boundDepths(c.dominant, c.settings.depth_choice);
             std::uint32_t flips = 0;
-            for (std::size_t b = 0; b < bins.size(); ++b) { flips += std::max(bins[b], expected[b]) - std::min(bins[b], expected[b]); }
-            CHECK(std::accumulate(bins.begin(), bins.end(), 0u) == std::accumulate(expected.begin(), expected.end(), 0u));
+            for (std::size_t b = 0; b < bins.size(); ++b) {
+                flips += std::max(bins[b], expected[b]) - std::min(bins[b], expected[b]);
+            }
+            CHECK(std::accumulate(bins.begin(), bins.end(), 0u) ==
+                  std::accumulate(expected.begin(), expected.end(), 0u));
             CHECK(flips <= 2);
             all_flips += flips;
         }
@@ -163,10 +178,12 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and of these edge
             StereoOnDevice device = toDevice(*this, c);
             device.writeBins(bins);
             device.findEdgeRois();
-            const Borders expected = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+            const Borders expected =
+                reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
             const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
             const gpu::WarpCounters counters = device.readCounters();
-            CHECK(counters.borders_px == glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
+            CHECK(counters.borders_px ==
+                  glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
             CHECK(device.readTileKinds() == kinds);
             CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));
         }
@@ -174,7 +191,9 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and of these edge
     CHECK(all_flips <= 4);  // measured: none
 }
 
-TEST_CASE_FIXTURE(Gpu, "edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over many workgroups of tiles") {
+TEST_CASE_FIXTURE(Gpu,
+                  "edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over "
+                  "many workgroups of tiles") {
     for (const glm::uvec2 size_tiles : {glm::uvec2(8, 6), glm::uvec2(43, 3), glm::uvec2(33, 31)}) {
         for (const Side dominant : {kLeft, kRight}) {
             StereoCase c = makePlainCase(16u * size_tiles - 3u, dominant);
@@ -192,7 +211,8 @@ TEST_CASE_FIXTURE(Gpu, "edge_rois marks what the dominant lens hides and leaves 
             device.writeTileKinds(test::kindsOf(before));
             device.writeBins(bins);
             device.findEdgeRois(/*hidden_tiles=*/true);
-            const Borders borders = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+            const Borders borders =
+                reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
             auto expected = reference::markEdges(borders, c.sizePx());
             const auto without_lens = std::ranges::count(expected, TileKind::kEdge);
             reference::markHidden(expected, c.settings);
@@ -209,33 +229,39 @@ TEST_CASE_FIXTURE(Gpu, "components groups holes as a flood fill does, whatever t
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(128, 96)}) {
         CAPTURE(size_px.x);
         // A path that winds from row to row, two pixels apart from itself: the longest a component can take.
-        const Mask winding = drawMask(size_px, [&](auto x, auto y) { return y % 2 == 0 || x == (y % 4 == 1 ? size_px.x - 1 : 0); });
-        std::vector<Mask> masks{drawMask(size_px, [](auto, auto) { return false; }),
-                                drawMask(size_px, [](auto, auto) { return true; }),
-                                drawMask(size_px, [](auto x, auto y) { return (x + y) % 2 == 0; }),
-                                drawMask(size_px, [&](auto x, auto y) { return x == size_px.x - 1 && y == size_px.y - 1; }),
-                                drawMask(size_px, [](auto x, auto) { return x % 2 == 0; }),
-                                drawMask(size_px, [](auto x, auto y) { return x % 3 == 0 && y % 3 == 0; }),
-                                winding};
+        const Mask winding = drawMask(
+            size_px, [&](auto x, auto y) { return y % 2 == 0 || x == (y % 4 == 1 ? size_px.x - 1 : 0); });
+        std::vector<Mask> masks{
+            drawMask(size_px, [](auto, auto) { return false; }),
+            drawMask(size_px, [](auto, auto) { return true; }),
+            drawMask(size_px, [](auto x, auto y) { return (x + y) % 2 == 0; }),
+            drawMask(size_px, [&](auto x, auto y) { return x == size_px.x - 1 && y == size_px.y - 1; }),
+            drawMask(size_px, [](auto x, auto) { return x % 2 == 0; }),
+            drawMask(size_px, [](auto x, auto y) { return x % 3 == 0 && y % 3 == 0; }),
+            winding};
         for (const unsigned share : {2u, 20u, 45u, 70u}) {
             masks.push_back(drawMask(size_px, [&](auto, auto) { return random() % 100 < share; }));
         }
         for (std::size_t m = 0; m < masks.size(); ++m) {
             CAPTURE(m);
-            for (const int margin_px : {5, 32}) { checkComponents(*this, size_px, masks[m], margin_px, 4096, m % 2 == 1); }
+            for (const int margin_px : {5, 32}) {
+                checkComponents(*this, size_px, masks[m], margin_px, 4096, m % 2 == 1);
+            }
             const std::size_t components = checkComponents(*this, size_px, masks[m], 0, 4096, false);
             if (m == 1 || m == 6) { CHECK(components == 1); }
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
+TEST_CASE_FIXTURE(
+    Gpu, "components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
     std::mt19937 random(2);
     const glm::uvec2 size_px(128, 96);
     const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });
     // An L, whose box contains tiles that its pixels do not meet, and two specks.
-    const Mask corner = drawMask(
-        size_px, [](auto x, auto y) { return (x == 2 && y < 90) || (y == 90 && x > 1 && x < 120) || (y == 10 && (x == 60 || x == 100)); });
+    const Mask corner = drawMask(size_px, [](auto x, auto y) {
+        return (x == 2 && y < 90) || (y == 90 && x > 1 && x < 120) || (y == 10 && (x == 60 || x == 100));
+    });
     for (const Mask& mask : {scattered, corner}) {
         for (const std::uint32_t boxes : {1u, 2u, 3u, 8u}) {
             CAPTURE(boxes);

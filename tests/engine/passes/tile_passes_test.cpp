@@ -21,13 +21,15 @@ struct Ranges {
     std::uint32_t groups_done;  // of the list of pairs, afterwards
 };
 // Under a mask, only for the listed tiles.
-Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, glm::uvec2 size_px, bool is_masked = false,
-                      const std::vector<std::uint32_t>& listed = {}, bool half_floats = false) {
+Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, glm::uvec2 size_px,
+                      bool is_masked = false, const std::vector<std::uint32_t>& listed = {},
+                      bool half_floats = false) {
     const Kernel& kernel = gpu.kernel(TileRangesKernel{.masked = is_masked, .half_colours = half_floats});
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
     const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
     const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
-    const Buffer tiles = gpu.upload("tiles", sorted_tiles), pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
+    const Buffer tiles = gpu.upload("tiles", sorted_tiles),
+                 pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
     const Buffer list = gpu.upload("tile list", listed);
     const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(7)));
     const Buffer full = gpu.upload("full tiles", std::vector<gpu::uint>(tile_count, 7));
@@ -43,7 +45,8 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     state.tile_list = list.address<gpu::uint>();
     state.full_tiles = full.address<gpu::uint>();
     state.chosen_tiles = test::makeList(listed.size());
-    const Buffer target = gpu.upload("target", std::vector{state}), eyes = gpu.upload("eyes", std::vector{eye});
+    const Buffer target = gpu.upload("target", std::vector{state}),
+                 eyes = gpu.upload("eyes", std::vector{eye});
     gpu::TileRangesPass pass{};
     pass.eyes = eyes.address<gpu::EyeView>();
     pass.tiles = tiles.address<gpu::uint>();
@@ -53,7 +56,9 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     pass.background = kBackground;
     gpu.run([&](Commands& commands) {
         if (is_masked) {
-            commands.dispatchIndirect(kernel, pass, target, offsetof(gpu::TargetState, chosen_tiles) + offsetof(gpu::ListState, per_item));
+            commands.dispatchIndirect(
+                kernel, pass, target,
+                offsetof(gpu::TargetState, chosen_tiles) + offsetof(gpu::ListState, per_item));
         } else {
             commands.dispatchOver(kernel, pass, tile_count);
         }
@@ -66,7 +71,8 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
                   .depths = gpu.readBack<float>(depths, pixels),
                   .groups_done = gpu.readBack<gpu::ListState>(pairs, 1)[0].groups_done};
     std::ranges::sort(result.full);
-    result.colours = half_floats ? test::unpackHalves(gpu.readBack<glm::uvec2>(colours, pixels)) : gpu.readBack<glm::vec4>(colours, pixels);
+    result.colours = half_floats ? test::unpackHalves(gpu.readBack<glm::uvec2>(colours, pixels))
+                                 : gpu.readBack<glm::vec4>(colours, pixels);
     return result;
 }
 
@@ -75,7 +81,9 @@ struct Raster {
     Raster(Gpu& gpu, const test::StagedScene& scene)
         : staged(scene), pixels(std::size_t{scene.view.eye.size_px.x} * scene.view.eye.size_px.y), gpu_(gpu) {
         std::vector<gpu::ProjectedSplat> device_splats;
-        for (const reference::ProjectedSplat& splat : staged.twin.splats) { device_splats.push_back(test::toDevice(splat)); }
+        for (const reference::ProjectedSplat& splat : staged.twin.splats) {
+            device_splats.push_back(test::toDevice(splat));
+        }
         std::vector<std::uint32_t> pair_ranks;
         for (const TilePair& pair : staged.twin.sorted_pairs) { pair_ranks.push_back(pair.splat); }
         eyes_ = gpu.upload("eyes", std::vector{viewOf(staged.view.eye, kSettings.near)});
@@ -96,7 +104,8 @@ struct Raster {
         reference::Settings settings = kSettings;
         settings.background = kBackground;
         settings.inverse_depth_moments = true;
-        return reference::rasterize(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges, staged.view.eye, settings);
+        return reference::rasterize(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges,
+                                    staged.view.eye, settings);
     }
     // Runs `kernel` for the scene's splats, with 32 threads per cell.
     void run(RasterizeKernel variant) {
@@ -140,18 +149,23 @@ TEST_CASE_FIXTURE(Gpu, "tile_ranges looks through any number of pairs, and past 
     tiles[count - 2] = 2;
     tiles[count - 1] = 4;
     CHECK(rangesOnDevice(*this, tiles, {64, 16}).ranges ==
-          std::vector{glm::uvec2(0), glm::uvec2(0, count - 2), glm::uvec2(count - 2, count - 1), glm::uvec2(count - 1)});
+          std::vector{glm::uvec2(0), glm::uvec2(0, count - 2), glm::uvec2(count - 2, count - 1),
+                      glm::uvec2(count - 1)});
     CHECK(rangesOnDevice(*this, {}, {32, 16}).ranges == std::vector(2, glm::uvec2(0)));
 }
 
-TEST_CASE_FIXTURE(Gpu, "tile_ranges finds the pairs of every tile; under a mask it lists tiles with pairs, and clears those without") {
+TEST_CASE_FIXTURE(Gpu,
+                  "tile_ranges finds the pairs of every tile; under a mask it lists tiles with pairs, and "
+                  "clears those without") {
     std::mt19937 random(3);
     for (const glm::uvec2 size_px : {glm::uvec2(300, 170), glm::uvec2(16, 16), glm::uvec2(1001, 7)}) {
         const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
         const std::uint32_t tile_count = size_tiles.x * size_tiles.y;
         for (const std::uint32_t one_in : {1u, 3u, 10000u}) {
-            for (const auto& [is_masked, half_floats] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
-                INFO("size ", size_px.x, ", one in ", one_in, ", is masked ", is_masked, ", half floats ", half_floats);
+            for (const auto& [is_masked, half_floats] :
+                 {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+                INFO("size ", size_px.x, ", one in ", one_in, ", is masked ", is_masked, ", half floats ",
+                     half_floats);
                 std::vector<std::uint32_t> tiles, listed, full;
                 std::vector<glm::uvec2> expected(tile_count, glm::uvec2(7));
                 for (std::uint32_t t = 0; t < tile_count; ++t) {
@@ -174,8 +188,11 @@ TEST_CASE_FIXTURE(Gpu, "tile_ranges finds the pairs of every tile; under a mask 
                 std::size_t wrong = 0;
                 for (std::size_t i = 0; i < found.colours.size(); ++i) {
                     const std::size_t t = test::tileOf(i, size_px);
-                    const bool cleared = std::ranges::find(listed, t) != listed.end() && expected[t].x == expected[t].y;
-                    wrong += found.colours[i] == (cleared ? glm::vec4(kBackground, 0.0f) : glm::vec4(7.0f)) ? 0 : 1;
+                    const bool cleared =
+                        std::ranges::find(listed, t) != listed.end() && expected[t].x == expected[t].y;
+                    wrong += found.colours[i] == (cleared ? glm::vec4(kBackground, 0.0f) : glm::vec4(7.0f))
+                                 ? 0
+                                 : 1;
                     wrong += found.depths[i] == (cleared ? 0.0f : 7.0f) ? 0 : 1;
                 }
                 CHECK(wrong == 0);
@@ -204,7 +221,8 @@ TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and none where its depth is not one") {
+TEST_CASE_FIXTURE(Gpu,
+                  "rasterize leaves the word that each pixel moves by, and none where its depth is not one") {
     using reference::DepthChoice;
     std::size_t pixels = 0, other = 0, other_spread = 0;
     for (const test::StagedScene& staged : test::stagedScenes()) {
@@ -218,11 +236,15 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
             RasterizeKernel kernel{.depth = choice != DepthChoice::kInverse, .moments = 1};
             const auto words = wordsOnDevice(*this, raster, kernel);
             auto of_even = words;
-            for (std::size_t i = 0; i < of_even.size(); ++i) { of_even[i] = i / (4 * width) % 2 == 0 ? words[i] : kUnwritten; }
+            for (std::size_t i = 0; i < of_even.size(); ++i) {
+                of_even[i] = i / (4 * width) % 2 == 0 ? words[i] : kUnwritten;
+            }
             kernel.even_rows = 1;
             CHECK(wordsOnDevice(*this, raster, kernel) == of_even);
             // Where D does not affect the choice, its sum changes nothing.
-            if (choice == DepthChoice::kInverse) { CHECK(wordsOnDevice(*this, raster, {.depth = 1, .moments = 1}) == words); }
+            if (choice == DepthChoice::kInverse) {
+                CHECK(wordsOnDevice(*this, raster, {.depth = 1, .moments = 1}) == words);
+            }
             std::size_t touched = 0;
             for (std::size_t i = 0; i < raster.pixels; ++i) {
                 const std::size_t row = 4 * width * (i / width), x = i % width;
@@ -236,7 +258,8 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
                     other += test::isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
                     // Spreads of less than 2^-10 are rounding errors of sums in single precision; rounding
                     // also decides between two codes.
-                    other_spread += got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7 ? 0 : 1;
+                    other_spread +=
+                        got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7 ? 0 : 1;
                 }
             }
             CHECK(touched == 0);
@@ -250,8 +273,10 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
 }
 
 // For each splat by rank, from one run of contribute.
-std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster, const Buffer& wanted,
-                                                                              std::uint32_t threads, bool by_lanes) {
+std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster,
+                                                                              const Buffer& wanted,
+                                                                              std::uint32_t threads,
+                                                                              bool by_lanes) {
     const std::size_t splats = raster.staged.twin.splats.size();
     std::vector<gpu::uint> order(splats);
     std::iota(order.begin(), order.end(), 0u);
@@ -266,30 +291,37 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
                                    wanted.address<gpu::vec4>(),
                                    sums.address<gpu::uint>(),
                                    0};
-    const Kernel& kernel = gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true, by_lanes));
+    const Kernel& kernel =
+        gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true, by_lanes));
     const glm::uvec2 size_tiles = tilesOf(raster.staged.view.eye.size_px);
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
     std::vector<std::array<double, gpu::kContributionSums>> found(splats);
     const auto steps = gpu.readBack<std::int64_t>(sums, splats * gpu::kContributionSums);
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        found[i / gpu::kContributionSums][i % gpu::kContributionSums] = static_cast<double>(steps[i]) / gpu::kContributionSteps;
+        found[i / gpu::kContributionSums][i % gpu::kContributionSums] =
+            static_cast<double>(steps[i]) / gpu::kContributionSteps;
     }
     return found;
 }
 
-TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture and which way it should go, the same on every run") {
+TEST_CASE_FIXTURE(Gpu,
+                  "contribute finds what each splat makes up of a picture and which way it should go, the "
+                  "same on every run") {
     for (const test::StagedScene& staged : test::stagedScenes()) {
         CAPTURE(staged.view.name);
         Raster raster(*this, staged);
         raster.run({});
         const reference::Picture truth = raster.makeTwin();
         std::vector<glm::dvec3> wanted;
-        for (const glm::dvec4& shown : truth.rgba) { wanted.push_back(0.5 * glm::dvec3(shown) + glm::dvec3(0.3, 0.1, 0.0)); }
+        for (const glm::dvec4& shown : truth.rgba) {
+            wanted.push_back(0.5 * glm::dvec3(shown) + glm::dvec3(0.3, 0.1, 0.0));
+        }
         std::vector<glm::vec4> colours;
         for (const glm::dvec3& colour : wanted) { colours.emplace_back(glm::vec3(colour), 1.0f); }
         const Buffer picture = upload("wanted", colours);
-        const auto expected = reference::contribute(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges, staged.view.eye,
-                                                    kSettings, truth, wanted);
+        const auto expected =
+            reference::contribute(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges,
+                                  staged.view.eye, kSettings, truth, wanted);
         std::vector<std::pair<std::uint32_t, bool>> ways{{8u, false}, {32u, false}};
         if (PassKernels(context(), 8).cellsAreNarrow()) { ways.emplace_back(8u, true); }
         for (const auto& [threads, by_lanes] : ways) {
@@ -302,7 +334,9 @@ TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture a
                 const reference::Contribution& e = expected[i];
                 const std::array sums{e.weight,       e.missing.x,    e.missing.y, e.missing.z,
                                       e.opacity_pull, e.opacity_hold, e.size_pull, e.size_hold};
-                for (std::size_t s = 0; s < sums.size(); ++s) { off[s] += std::abs(found[i][s] - sums[s]), all[s] += std::abs(sums[s]); }
+                for (std::size_t s = 0; s < sums.size(); ++s) {
+                    off[s] += std::abs(found[i][s] - sums[s]), all[s] += std::abs(sums[s]);
+                }
             }
             for (std::size_t s = 0; s < off.size(); ++s) {
                 CAPTURE(s);

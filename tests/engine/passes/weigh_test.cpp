@@ -21,13 +21,16 @@ std::vector<TileRange> drawRanges(std::size_t tiles, unsigned most_pairs, std::m
 
 // The tiles of a case whose costs differ: their middle comes from next to the border of a tile, and rounding
 // may put it on either side.
-std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileRange>& ranges, test::Rows rows) {
+std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileRange>& ranges,
+                          test::Rows rows) {
     StereoOnDevice device = toDevice(gpu, c, rows);
     std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
     reference::markHidden(before, c.settings);
     // What the frame before left does not matter, unless it is hidden.
     std::vector<gpu::uint> stale = test::kindsOf(before);
-    for (std::size_t t = 0; t < stale.size(); t += 7) { stale[t] = stale[t] == gpu::kTileHidden ? stale[t] : gpu::kTilePredicted; }
+    for (std::size_t t = 0; t < stale.size(); t += 7) {
+        stale[t] = stale[t] == gpu::kTileHidden ? stale[t] : gpu::kTilePredicted;
+    }
     device.writeTileKinds(stale);
     device.weigh(ranges, !c.settings.source_hidden.empty(), kVisible);
     const reference::Weighed expected = reference::weigh(c.dominant, ranges, c.eyes, c.settings);
@@ -43,7 +46,10 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
         wrong_depths += hidden || depths[t] == expected_depths[t] ? 0 : 1;
         // Where nothing is worth moving, select says so of each tile.
         const auto expected_kind = static_cast<gpu::uint>(expected.kinds[t]);
-        wrong_kinds += !same || kinds[t] == expected_kind || (!expected.moves && kinds[t] == 0 && expected_kind == gpu::kTileCheap) ? 0 : 1;
+        wrong_kinds += !same || kinds[t] == expected_kind ||
+                               (!expected.moves && kinds[t] == 0 && expected_kind == gpu::kTileCheap)
+                           ? 0
+                           : 1;
         picture_cost += hidden ? 0 : costs[t];
         moved += kinds[t] == 0 ? 1 : 0;
         if (kinds[t] == 0) { saved_cost += costs[t] - gpu::kTilePairs - c.settings.move_cost; }
@@ -66,7 +72,8 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     const bool rows_wanted = moves || std::ranges::count(expected.kinds, TileKind::kHidden) > 0;
     CHECK(sizeOf(counters.per_row) == (rows_wanted ? glm::uvec3(size_px.y, 1, 1) : glm::uvec3(0)));
     const gpu::DispatchSize& visible = counters.per_visible;
-    CHECK(visible.x * visible.y * visible.z == (moves ? (kVisible + gpu::kNewcomersBlock - 1) / gpu::kNewcomersBlock : 0));
+    CHECK(visible.x * visible.y * visible.z ==
+          (moves ? (kVisible + gpu::kNewcomersBlock - 1) / gpu::kNewcomersBlock : 0));
     // Values to which others add start at zero.
     const auto isZero = [](gpu::uint value) { return value == 0; };
     CHECK(std::ranges::all_of(device.readTileErrors(), isZero));
@@ -80,12 +87,13 @@ StereoCase makeStill(glm::uvec2 size_px) {
     const Eye eye = test::makeEye(size_px);
     StereoCase c{"still", {}, {eye, eye}, {}, {}};
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
-    c.dominant = {size_px, std::vector(pixels, glm::dvec4(0.0)), std::vector(pixels, 0.0), std::vector(pixels, 0.0),
-                  std::vector(pixels, 0.0)};
+    c.dominant = {size_px, std::vector(pixels, glm::dvec4(0.0)), std::vector(pixels, 0.0),
+                  std::vector(pixels, 0.0), std::vector(pixels, 0.0)};
     return c;
 }
 
-TEST_CASE_FIXTURE(Gpu, "weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
+TEST_CASE_FIXTURE(
+    Gpu, "weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
     std::size_t other = 0;
     std::mt19937 random(5);
     for (StereoCase c : test::makeStereoCases()) {
@@ -99,8 +107,8 @@ TEST_CASE_FIXTURE(Gpu, "weigh finds the twin's costs and kinds, for eyes of ever
                 c.settings.source_hidden.push_back(random() % 8 == 0 ? 1 : 0);
                 c.settings.target_hidden.push_back(random() % 8 == 0 ? 1 : 0);
             }
-            const std::size_t differ =
-                checkWeighing(*this, c, drawRanges(count, 200, random), hidden ? test::Rows::kShared : test::Rows::kOwn);
+            const std::size_t differ = checkWeighing(*this, c, drawRanges(count, 200, random),
+                                                     hidden ? test::Rows::kShared : test::Rows::kOwn);
             CHECK(differ <= 1);
             other += differ;
         }
@@ -128,10 +136,13 @@ void checkCounts(Gpu& gpu, const std::vector<glm::uvec2>& sizes_tiles) {
 TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over any number of tiles, from one to many workgroups") {
     checkCounts(*this, {{1, 1}, {127, 1}, {1, 128}, {43, 3}, {33, 31}});
 }
-TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over as many tiles as a headset has" * test::nightly()) { checkCounts(*this, {{100, 50}}); }
+TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over as many tiles as a headset has" * test::nightly()) {
+    checkCounts(*this, {{100, 50}});
+}
 
 TEST_CASE_FIXTURE(Gpu,
-                  "weigh moves nothing where that saves no more than the shared part of moving all, as the twin, and holds costs to "
+                  "weigh moves nothing where that saves no more than the shared part of moving all, as the "
+                  "twin, and holds costs to "
                   "what a word has room for") {
     // Four tiles that cost 40 each to move: more than a part of 160 must be saved.
     StereoCase c = makeStill({64, 16});
@@ -159,7 +170,8 @@ TEST_CASE_FIXTURE(Gpu,
     }
     StereoOnDevice device = toDevice(*this, c);
     device.weigh({{0, 5000000}, {7, 4194294}, {0, 4194288}, {0, 100}}, false, kVisible);
-    CHECK(device.readTileCosts() == std::vector<gpu::uint>{gpu::kMaxTileCost, gpu::kMaxTileCost, gpu::kMaxTileCost, 116});
+    CHECK(device.readTileCosts() ==
+          std::vector<gpu::uint>{gpu::kMaxTileCost, gpu::kMaxTileCost, gpu::kMaxTileCost, 116});
 }
 
 TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a headset's outer columns") {
@@ -168,7 +180,9 @@ TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a hea
     const double inwards = std::tan(0.6), outwards = std::tan(0.6 + 10.0 * glm::pi<double>() / 180.0);
     const double focal_px = size_px.x / (inwards + outwards);
     const auto eyeOf = [&](double principal_px, double cant_rad, double x) {
-        return Eye{{glm::angleAxis(cant_rad, glm::dvec3(0.0, 1.0, 0.0)), {x, 0.0, 0.0}}, {focal_px, focal_px, principal_px, 48.0}, size_px};
+        return Eye{{glm::angleAxis(cant_rad, glm::dvec3(0.0, 1.0, 0.0)), {x, 0.0, 0.0}},
+                   {focal_px, focal_px, principal_px, 48.0},
+                   size_px};
     };
     const double left_px = focal_px * outwards, right_px = focal_px * inwards;
     const reference::EyePair pairs[] = {{eyeOf(left_px, 0.0, 0.0), eyeOf(right_px, 0.0, 0.064)},
@@ -182,7 +196,8 @@ TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a hea
         c.eyes = pairs[p];
         const auto ranges = drawRanges(60, 500, random);
         CHECK(checkWeighing(*this, c, ranges, test::Rows::kOwn) == 0);
-        const auto unseen = std::ranges::count(reference::weigh(c.dominant, ranges, c.eyes, c.settings).kinds, TileKind::kEdge);
+        const auto unseen = std::ranges::count(reference::weigh(c.dominant, ranges, c.eyes, c.settings).kinds,
+                                               TileKind::kEdge);
         // The affiliated eye's outer columns, and not all of its tiles.
         CHECK(unseen >= least_unseen[p]);
         CHECK(unseen <= (p == 2 ? 0 : 30));

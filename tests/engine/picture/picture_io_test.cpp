@@ -9,22 +9,28 @@ SUITE(picture_io) {
 Image makeRamp(glm::uvec2 size_px, int channels) {
     Image image{size_px, channels, {}};
     image.values.resize(image.pixelCount() * static_cast<std::size_t>(channels));
-    for (std::size_t i = 0; i < image.values.size(); ++i) { image.values[i] = static_cast<float>(i) * 0.37f - 1.0f; }
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+        image.values[i] = static_cast<float>(i) * 0.37f - 1.0f;
+    }
     return image;
 }
 
 // Eighths are exact in float32; in steps of 1/255 they are not, so rounding shows.
 Image makeDisplay(glm::uvec2 size_px) {
     Image image{size_px, 4, {}};
-    for (std::size_t i = 0; i < image.pixelCount() * 4; ++i) { image.values.push_back(static_cast<float>(i % 9) / 8.0f); }
+    for (std::size_t i = 0; i < image.pixelCount() * 4; ++i) {
+        image.values.push_back(static_cast<float>(i % 9) / 8.0f);
+    }
     return image;
 }
 
 TEST_CASE("a value becomes the nearest of a display's, whatever it is") {
-    for (const auto& [value, level] : {std::pair(-1.0f, 0), {0.4f, 0}, {0.6f, 1}, {254.4f, 254}, {254.6f, 255}, {1e30f, 255}}) {
+    for (const auto& [value, level] :
+         {std::pair(-1.0f, 0), {0.4f, 0}, {0.6f, 1}, {254.4f, 254}, {254.6f, 255}, {1e30f, 255}}) {
         CHECK(quantize(value / 255.0f) == level);
     }
-    CHECK(these(quantize(std::numeric_limits<float>::infinity()), quantize(std::numeric_limits<float>::quiet_NaN())) == these(255, 0));
+    CHECK(these(quantize(std::numeric_limits<float>::infinity()),
+                quantize(std::numeric_limits<float>::quiet_NaN())) == these(255, 0));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a float picture comes back to the bit") {
@@ -33,7 +39,8 @@ TEST_CASE_FIXTURE(AtWork, "a float picture comes back to the bit") {
         if (channels != 4) {
             writePfm(work.path / "a.pfm", image);
             const Image back = readPicture(work.path / "a.pfm");
-            CHECK(these(back.size_px, back.channels, back.values) == these(image.size_px, channels, image.values));
+            CHECK(these(back.size_px, back.channels, back.values) ==
+                  these(image.size_px, channels, image.values));
         }
         const auto files = writePicture(work.path / "a.b", PictureKind::kFloat, image);
         REQUIRE(!files.empty());
@@ -65,7 +72,9 @@ TEST_CASE_FIXTURE(AtWork, "a display picture comes back opaque, each value the n
     REQUIRE(files.size() == 1);
     const Image back = readPicture(files.front());
     REQUIRE(back.channels == 3);
-    for (std::size_t i = 0; i < rgb.values.size(); ++i) { CHECK(std::lround(back.values[i] * 255.0f) == quantize(rgb.values[i])); }
+    for (std::size_t i = 0; i < rgb.values.size(); ++i) {
+        CHECK(std::lround(back.values[i] * 255.0f) == quantize(rgb.values[i]));
+    }
 }
 
 TEST_CASE_FIXTURE(AtWork, "a write that fails leaves nothing") {
@@ -80,17 +89,20 @@ TEST_CASE_FIXTURE(AtWork, "a write that fails leaves nothing") {
 
 TEST_CASE("colours of a picture with alpha are read as they are stored") {
     // One pixel: 200, 100, 50, and an alpha of 128.
-    constexpr unsigned char kPng[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
-                                      0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00,
-                                      0x00, 0x1f, 0x15, 0xc4, 0x89, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x44, 0x41, 0x54, 0x78,
-                                      0x9c, 0x63, 0x38, 0x91, 0x62, 0xd4, 0x00, 0x00, 0x05, 0x35, 0x01, 0xdf, 0x73, 0x62,
-                                      0xe3, 0xdb, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+    constexpr unsigned char kPng[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d,
+                                      0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01,
+                                      0x08, 0x06, 0x00, 0x00, 0x00, 0x1f, 0x15, 0xc4, 0x89, 0x00, 0x00, 0x00,
+                                      0x0d, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x38, 0x91, 0x62, 0xd4,
+                                      0x00, 0x00, 0x05, 0x35, 0x01, 0xdf, 0x73, 0x62, 0xe3, 0xdb, 0x00, 0x00,
+                                      0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
     const Workplace folder;
-    std::ofstream(folder.path / "a.png", std::ios::binary).write(reinterpret_cast<const char*>(kPng), sizeof kPng);
+    std::ofstream(folder.path / "a.png", std::ios::binary)
+        .write(reinterpret_cast<const char*>(kPng), sizeof kPng);
     const Image image = readPicture(folder.path / "a.png");
     REQUIRE(image.values.size() == 4);
-    CHECK(these(image.values[0], image.values[1], image.values[2]) ==
-          these(doctest::Approx(200.0 / 255.0), doctest::Approx(100.0 / 255.0), doctest::Approx(50.0 / 255.0)));
+    CHECK(these(image.values[0], image.values[1], image.values[2]) == these(doctest::Approx(200.0 / 255.0),
+                                                                            doctest::Approx(100.0 / 255.0),
+                                                                            doctest::Approx(50.0 / 255.0)));
 }
 
 #ifdef BINOSPLAT_OPENIMAGEIO
@@ -98,9 +110,9 @@ TEST_CASE("a volume is no picture") {
     // DDS of 2x2x2 pixels of four bytes: size of the header, what it holds, height, width, bytes per row,
     // depth, mips, 11 unused words, the pixel format (size of its header, RGB with alpha, no code, bits,
     // masks), and the flag of a volume.
-    constexpr std::array<std::uint32_t, 31> kHeader{124,  0x801007, 2,        2,          8,      2,        1, 0,  0,    0, 0,
-                                                    0,    0,        0,        0,          0,      0,        0, 32, 0x41, 0, 32,
-                                                    0xff, 0xff00,   0xff0000, 0xff000000, 0x1008, 0x200000, 0, 0,  0};
+    constexpr std::array<std::uint32_t, 31> kHeader{
+        124, 0x801007, 2,  2,    8, 2,  1,    0,      0,        0,          0,      0,        0, 0, 0, 0,
+        0,   0,        32, 0x41, 0, 32, 0xff, 0xff00, 0xff0000, 0xff000000, 0x1008, 0x200000, 0, 0, 0};
     const Workplace folder;
     {
         std::ofstream file(folder.path / "a.dds", std::ios::binary);
@@ -108,7 +120,8 @@ TEST_CASE("a volume is no picture") {
         file << std::string(32, 'x');
     }
     const std::string message =
-        (folder.path / "a.dds").string() + ": has 2x2x2 pixels of 4 channels, must be a flat picture of up to 2^30 values";
+        (folder.path / "a.dds").string() +
+        ": has 2x2x2 pixels of 4 channels, must be a flat picture of up to 2^30 values";
     CHECK_THROWS_WITH_AS(readPicture(folder.path / "a.dds"), message.c_str(), Error);
 }
 #endif
@@ -128,14 +141,18 @@ TEST_CASE_FIXTURE(AtWork, "files that end early or are something else are errors
         const fs::path path = work.path / (header[1] == 'F' ? "promise.pfm" : "promise.ppm");
         std::ofstream(path, std::ios::binary) << header << "xyz";
         const std::string bytes = header[1] == 'F' ? "10800000000" : "2700000000";
-        CHECK_THROWS_WITH_AS(readPicture(path), (path.string() + ": ends after 3 of " + bytes + " bytes of pixels").c_str(), Error);
+        CHECK_THROWS_WITH_AS(readPicture(path),
+                             (path.string() + ": ends after 3 of " + bytes + " bytes of pixels").c_str(),
+                             Error);
     }
     CHECK_THROWS_AS(readPicture(work.path / "none.exr"), Error);
     for (const char* name : {"p.png", "p.jpg", "p.pfm", "p.ppm"}) {
-        std::ofstream(work.path / name) << "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+        std::ofstream(work.path / name)
+            << "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
         CHECK_THROWS_WITH_AS(
             readPicture(work.path / name),
-            ((work.path / name).string() + ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)")
+            ((work.path / name).string() +
+             ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)")
                 .c_str(),
             Error);
     }

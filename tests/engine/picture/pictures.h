@@ -39,7 +39,8 @@ inline Image makeFlat(glm::uvec2 size_px, const glm::vec3& rgb, int channels = 3
 inline Image makeWaves(glm::uvec2 size_px, double shift_px) {
     return makePicture(size_px, [&](double x, double y) {
         const double at = x - shift_px;
-        return glm::vec3(glm::dvec3(0.5 + 0.4 * std::sin(0.7 * at + 0.2 * y), 0.5 + 0.4 * std::sin(0.3 * at - 0.4 * y),
+        return glm::vec3(glm::dvec3(0.5 + 0.4 * std::sin(0.7 * at + 0.2 * y),
+                                    0.5 + 0.4 * std::sin(0.3 * at - 0.4 * y),
                                     0.5 + 0.3 * std::sin(0.11 * at)));
     });
 }

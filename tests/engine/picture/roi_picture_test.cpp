@@ -5,7 +5,9 @@
 
 SUITE(roi_picture) {
 
-glm::vec3 tinted(PixelOrigin origin, float grey) { return (1.0f - kTintShare) * glm::vec3(grey) + kTintShare * tintOf(origin); }
+glm::vec3 tinted(PixelOrigin origin, float grey) {
+    return (1.0f - kTintShare) * glm::vec3(grey) + kTintShare * tintOf(origin);
+}
 
 bool isAt(const Image& image, std::uint32_t x, std::uint32_t y, const glm::vec3& colour) {
     return glm::length(colourOf(image, x, y) - colour) < 1e-6f;

@@ -22,7 +22,8 @@ inline void turnScene(Scene& scene, const glm::dquat& turn, double scale = 1.0) 
 class Maker {
 public:
     // A rectangle of splats, given by a corner and two sides: spread evenly at random, and facing its normal.
-    Maker& wall(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b, double per_square_metre = 250.0, double bumps = 0.0) {
+    Maker& wall(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b,
+                double per_square_metre = 250.0, double bumps = 0.0) {
         const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
         const auto count = static_cast<int>(per_square_metre * glm::length(glm::cross(a, b)));
         for (int i = 0; i < count; ++i) {
@@ -32,7 +33,8 @@ public:
         return *this;
     }
     // The sides, the top and, last, the bottom of a box.
-    Maker& box(const glm::dvec3& low, const glm::dvec3& high, double per_square_metre = 250.0, bool has_bottom = true) {
+    Maker& box(const glm::dvec3& low, const glm::dvec3& high, double per_square_metre = 250.0,
+               bool has_bottom = true) {
         const glm::dvec3 s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
         wall(low, x, y, per_square_metre).wall(low, y, z, per_square_metre).wall(low, x, z, per_square_metre);
         wall(high, -x, -y, per_square_metre).wall(high, -y, -z, per_square_metre);
@@ -126,10 +128,12 @@ inline Maker crate() { return Maker().box({-0.3, -0.5, -0.25}, {0.3, 0, 0.25}, 8
 // A table with a vase on a lawn, a hedge around it, and a distant sky that has a fifth of the splats.
 inline Maker garden() {
     Maker made;
-    made.wall({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, 60.0, 0.05).box({-0.7, -0.75, -0.7}, {0.7, -0.7, 0.7}, 2000.0);
+    made.wall({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, 60.0, 0.05)
+        .box({-0.7, -0.75, -0.7}, {0.7, -0.7, 0.7}, 2000.0);
     made.ball({0.1, -0.95, 0.0}, 0.2, 9000).sized(0.1);
     for (const double side : {-9.0, 9.0}) {
-        made.wall({side, -4, -9}, {0, 4, 0}, {0, 0, 18}, 60.0, 1.0).wall({-9, -4, side}, {0, 4, 0}, {18, 0, 0}, 60.0, 1.0);
+        made.wall({side, -4, -9}, {0, 4, 0}, {0, 0, 18}, 60.0, 1.0)
+            .wall({-9, -4, side}, {0, 4, 0}, {18, 0, 0}, 60.0, 1.0);
     }
     return made.sized(2.0).ball({0, -5, 0}, 80.0, 12000);
 }
@@ -148,13 +152,17 @@ inline Maker scannedToy() {
 inline Maker facingForward() {
     Maker made;
     for (const double x : {-0.8, 0.0, 0.7}) { made.ball({x, -0.3, 3.0 + 0.3 * x}, 0.25, 5000); }
-    return made.wall({-1.6, 0, 2.4}, {3.2, 0, 0}, {0, 0, 1.6}, 800.0).sized(0.08).wall({-5, -3, 7}, {10, 0, 0}, {0, 4, 0}, 400.0, 0.2);
+    return made.wall({-1.6, 0, 2.4}, {3.2, 0, 0}, {0, 0, 1.6}, 800.0)
+        .sized(0.08)
+        .wall({-5, -3, 7}, {10, 0, 0}, {0, 4, 0}, 400.0, 0.2);
 }
 
 // Three walls and a floor: the camera never entered the fourth part of the room.
 inline Maker openRoom() {
     Maker made;
-    made.wall({-3, 0, 0}, {6, 0, 0}, {0, 0, 5}).wall({-3, -2.8, 5}, {6, 0, 0}, {0, 2.8, 0}).wall({-3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
+    made.wall({-3, 0, 0}, {6, 0, 0}, {0, 0, 5})
+        .wall({-3, -2.8, 5}, {6, 0, 0}, {0, 2.8, 0})
+        .wall({-3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
     made.wall({3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
     return made.box({-0.9, -0.8, 2.8}, {0.9, 0, 3.8}, 1500.0);
 }
@@ -180,7 +188,8 @@ inline Maker town() {
 // A car of which only the outside is seen, in a yard of which only the ground is seen.
 inline Maker car() {
     Maker made;
-    made.box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false).box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false);
+    made.box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false)
+        .box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false);
     return made.sized(0.06).wall({-6, 0, -6}, {12, 0, 0}, {0, 0, 12}, 60.0, 0.03);
 }
 
@@ -196,7 +205,9 @@ inline Maker relief() {
 inline Maker fence() {
     Maker made;
     made.wall({-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
-    for (const double x : {-0.8, -0.4, 0.0, 0.4, 0.8}) { made.wall({x, -1, -2}, {0.02, 0, 0}, {0, 2, 0}, 2000.0); }
+    for (const double x : {-0.8, -0.4, 0.0, 0.4, 0.8}) {
+        made.wall({x, -1, -2}, {0.02, 0, 0}, {0, 2, 0}, 2000.0);
+    }
     return made;
 }
 

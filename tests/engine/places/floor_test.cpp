@@ -13,10 +13,12 @@ glm::dquat aboutAxis(int axis, double degrees) {
 }
 
 // The axis of each turn, and degrees: none, up along z, along x, along y, and neither.
-constexpr std::pair<int, double> kTurns[] = {{0, 0.0}, {0, 90.0}, {0, -90.0}, {2, 90.0}, {0, 180.0}, {0, 30.0}};
+constexpr std::pair<int, double> kTurns[] = {{0, 0.0},  {0, 90.0},  {0, -90.0},
+                                             {2, 90.0}, {0, 180.0}, {0, 30.0}};
 
 // The same scene, whichever of the file's axes is up.
-void checkTurned(const Scene& scene, bool is_inside, const std::function<void(const glm::dvec3& eye)>& check) {
+void checkTurned(const Scene& scene, bool is_inside,
+                 const std::function<void(const glm::dvec3& eye)>& check) {
     for (const auto& [axis, degrees] : kTurns) {
         INFO("axis ", axis, ", degrees ", degrees);
         const glm::dquat turn = aboutAxis(axis, degrees);
@@ -32,26 +34,31 @@ void checkTurned(const Scene& scene, bool is_inside, const std::function<void(co
     }
 }
 
-TEST_CASE("up, the height of the eye and the place within a room are the same whichever axis of the file is up") {
+TEST_CASE(
+    "up, the height of the eye and the place within a room are the same whichever axis of the file is up") {
     checkTurned(makeBuiltin("builtin:atelier", 20000), true, [](const glm::dvec3& eye) {
         CHECK(std::abs(-eye.y - 1.6) < 0.2);
         CHECK(std::abs(eye.x) < 2.8);
         CHECK(std::abs(eye.z - 2.5) < 2.3);
     });
-    checkTurned(statueOnGround().scene(), false, [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 1.9) < 0.2); });
-    checkTurned(scannedToy().scene(), false, [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 0.15) < 0.02); });
+    checkTurned(statueOnGround().scene(), false,
+                [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 1.9) < 0.2); });
+    checkTurned(scannedToy().scene(), false,
+                [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 0.15) < 0.02); });
     // Seen from above; z is up.
     Maker drone = town();
     CHECK(degreesBetween(judgeStandpoint(drone.turn(aboutAxis(0, -90.0)).scene()).view.up, {0, 0, 1}) < 2.0);
 }
 
-TEST_CASE("real things are seen upright, from outside, whichever axis of the file is up" * test::needsSharedData()) {
+TEST_CASE("real things are seen upright, from outside, whichever axis of the file is up" *
+          test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
-    for (const auto& [file, height] :
-         {std::pair("playbot/playbot_lod3_2dgs_sh2.ply", 1.18), std::pair("statues/angel_2dgs_sh0.ply", 1.59)}) {
+    for (const auto& [file, height] : {std::pair("playbot/playbot_lod3_2dgs_sh2.ply", 1.18),
+                                       std::pair("statues/angel_2dgs_sh0.ply", 1.59)}) {
         CAPTURE(file);
-        checkTurned(loadScene((*data / file).string()), false, [&](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - height) < 0.2); });
+        checkTurned(loadScene((*data / file).string()), false,
+                    [&](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - height) < 0.2); });
     }
 }
 
@@ -62,7 +69,8 @@ TEST_CASE("a facade is no ground: a wall with a relief, seen from the front, sta
     CHECK(point.view.eye.z < -3.0);
 }
 
-TEST_CASE("the axis that the file names as vertical is kept to; the floor says which way is up, or a format") {
+TEST_CASE(
+    "the axis that the file names as vertical is kept to; the floor says which way is up, or a format") {
     // On its own this would lie on its back.
     Maker made = statueOnGround();
     Scene scene = made.scene();
@@ -90,13 +98,15 @@ TEST_CASE("one stands beneath nothing: the floor is on the other side of cameras
     CHECK_FALSE(upBeneath(scene, {0, 0, 80}));
 }
 
-TEST_CASE("cameras that all look one way look down where no floor bears out their up, and ahead where one does") {
+TEST_CASE(
+    "cameras that all look one way look down where no floor bears out their up, and ahead where one does") {
     const auto beneath = [](const Scene& scene, const glm::dvec3& cameras, const glm::dvec3& their_up) {
         const std::optional<glm::dvec3> up = upBeneath(scene, cameras, their_up);
         return up ? degreesBetween(*up, kUp) : 180.0;
     };
     // Seen from above, wherever the top of the pictures points.
-    for (const glm::dvec3 their_up : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(-1, 0, 1))}) {
+    for (const glm::dvec3 their_up :
+         {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(-1, 0, 1))}) {
         CHECK(beneath(town().scene(), {0, -80, 0}, their_up) < 2.0);
         CHECK(beneath(car().scene(), {0, -8, 0}, their_up) < 2.0);
     }

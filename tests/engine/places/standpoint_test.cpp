@@ -14,7 +14,8 @@ double shareSeen(const Standpoint& point, const Scene& scene, const glm::dvec3& 
     for (const glm::vec3& position : scene.positions) {
         if (glm::distance(glm::dvec3(position), place) > reach) { continue; }
         ++all;
-        seen += degreesBetween(glm::dvec3(position) - point.view.eye, point.view.look - point.view.eye) < 30.0;
+        seen +=
+            degreesBetween(glm::dvec3(position) - point.view.eye, point.view.look - point.view.eye) < 30.0;
     }
     return static_cast<double>(seen) / std::max(all, 1);
 }
@@ -37,7 +38,9 @@ struct Kind {
 };
 
 const Kind kKinds[] = {
-    {"a room is entered at eye height, clear of its walls, and its densest part, a corner's table, is looked at", room, true, 1.5,
+    {"a room is entered at eye height, clear of its walls, and its densest part, a corner's table, is looked "
+     "at",
+     room, true, 1.5,
      [](const glm::dvec3& eye, const Standpoint& point) {
          CHECK(-eye.y == doctest::Approx(1.6).epsilon(0.06));
          CHECK(std::abs(eye.x) < 2.3);
@@ -65,13 +68,15 @@ const Kind kKinds[] = {
      }},
     {"a fence is seen from in front, without a floor", fence, false, 180.0,
      [](const glm::dvec3&, const Standpoint& point) { CHECK(point.up_why.ends_with("no floor was found")); }},
-    {"a garden is entered: its table is looked at from the lawn, under a sky of a fifth of the splats", garden, true, 1.5,
+    {"a garden is entered: its table is looked at from the lawn, under a sky of a fifth of the splats",
+     garden, true, 1.5,
      [](const glm::dvec3& eye, const Standpoint& point) {
          CHECK(-eye.y == doctest::Approx(1.6).epsilon(0.06));
          CHECK(glm::length(eye) < 9.0);
          CHECK(degreesOff(point, {0, -0.9, 0}) < 10.0);
      }},
-    {"a thing on a desk is seen from outside, as large as it is, whatever room there is about it", scannedToy, false, 1.5,
+    {"a thing on a desk is seen from outside, as large as it is, whatever room there is about it", scannedToy,
+     false, 1.5,
      [](const glm::dvec3& eye, const Standpoint&) {
          CHECK(glm::distance(eye, {0, -0.09, 0}) == between(0.12, 0.6));
          CHECK(eye.y < 0.0);
@@ -92,7 +97,8 @@ const Kind kKinds[] = {
          CHECK(std::abs(eye.x) < 0.8);
          CHECK(std::abs(eye.z) < 7.5);
      }},
-    {"a town is looked at from between its roofs or from outside, never from within a house", town, std::nullopt, 2.0,
+    {"a town is looked at from between its roofs or from outside, never from within a house", town,
+     std::nullopt, 2.0,
      [](const glm::dvec3& eye, const Standpoint&) {
          CHECK(eye.y < -1.0);
          const glm::dvec2 block(std::abs(std::remainder(eye.x, 40.0)), std::abs(std::remainder(eye.z, 40.0)));
@@ -101,25 +107,33 @@ const Kind kKinds[] = {
 };
 
 void checkKinds(bool has_floaters, double tilt, double heading) {
-    const glm::dquat turn = glm::angleAxis(tilt, glm::normalize(glm::dvec3(1, 0, 0.4))) * glm::angleAxis(heading, glm::dvec3(0, 1, 0));
+    const glm::dquat turn = glm::angleAxis(tilt, glm::normalize(glm::dvec3(1, 0, 0.4))) *
+                            glm::angleAxis(heading, glm::dvec3(0, 1, 0));
     for (const Kind& kind : kKinds) {
         Maker made = kind.make();
         if (has_floaters) { made.floaters(30.0); }
         Standpoint point = judgeStandpoint(made.turn(turn).scene());
-        INFO("kind.name ", kind.name, ", has_floaters ", has_floaters, ", tilt ", tilt, ", heading ", heading, ", point.why ", point.why);
-        for (glm::dvec3* const end : {&point.view.eye, &point.view.look, &point.view.up}) { *end = glm::conjugate(turn) * *end; }
+        INFO("kind.name ", kind.name, ", has_floaters ", has_floaters, ", tilt ", tilt, ", heading ", heading,
+             ", point.why ", point.why);
+        for (glm::dvec3* const end : {&point.view.eye, &point.view.look, &point.view.up}) {
+            *end = glm::conjugate(turn) * *end;
+        }
         CHECK(kind.is_inside.value_or(isInside(point)) == isInside(point));
         CHECK(degreesBetween(point.view.up, kUp) <= kind.up_deg);
         kind.check(point.view.eye, point);
     }
 }
 
-TEST_CASE("every kind of scene is looked at from where people would stand, as it is, and turned with floaters") {
+TEST_CASE(
+    "every kind of scene is looked at from where people would stand, as it is, and turned with floaters") {
     checkKinds(false, 0.0, 0.0);
     checkKinds(true, 0.3, 2.5);
 }
 
-TEST_CASE("every kind of scene is looked at from where people would stand, with floaters or not, turned and tilted" * test::nightly()) {
+TEST_CASE(
+    "every kind of scene is looked at from where people would stand, with floaters or not, turned and "
+    "tilted" *
+    test::nightly()) {
     for (const bool has_floaters : {false, true}) {
         for (const double tilt : {0.0, 0.3, 0.6}) {
             for (const double heading : {0.0, 0.7, 2.5}) { checkKinds(has_floaters, tilt, heading); }
@@ -146,16 +160,21 @@ TEST_CASE("one stands alike in a scene a hundred times as large, and in one a th
     for (const double scale : {100.0, 1.0, 0.001}) {
         CAPTURE(scale);
         Maker large = room(), toy = scannedToy();
-        const Standpoint in_room = judgeStandpoint(large.turn({1, 0, 0, 0}, scale).scene(), {60.0, 1.0 / scale, {}});
+        const Standpoint in_room =
+            judgeStandpoint(large.turn({1, 0, 0, 0}, scale).scene(), {60.0, 1.0 / scale, {}});
         CHECK(isInside(in_room));
         CHECK(-in_room.view.eye.y / scale == doctest::Approx(1.6).epsilon(0.06));
-        const Standpoint at_toy = judgeStandpoint(toy.turn({1, 0, 0, 0}, scale).scene(), {60.0, 1.0 / scale, {}});
+        const Standpoint at_toy =
+            judgeStandpoint(toy.turn({1, 0, 0, 0}, scale).scene(), {60.0, 1.0 / scale, {}});
         CHECK_FALSE(isInside(at_toy));
-        CHECK(glm::distance(at_toy.view.eye, at_toy.view.look) / scale == doctest::Approx(0.235).epsilon(0.1));
+        CHECK(glm::distance(at_toy.view.eye, at_toy.view.look) / scale ==
+              doctest::Approx(0.235).epsilon(0.1));
     }
 }
 
-TEST_CASE("what was seen from in front alone, a wall, a photograph and a single splat are looked at from in front") {
+TEST_CASE(
+    "what was seen from in front alone, a wall, a photograph and a single splat are looked at from in "
+    "front") {
     const auto checkFront = [](const Scene& scene, double most_deg) {
         const Standpoint point = judgeStandpoint(scene);
         CHECK(degreesBetween(point.view.look - point.view.eye, {0, 0, 1}) < most_deg);
@@ -172,7 +191,8 @@ TEST_CASE("what was seen from in front alone, a wall, a photograph and a single 
     CHECK(at_fence.view.eye.z < -2.0);
     for (const char* name : {"fence", "step-edge", "slanted-wall", "two-layers"}) {
         CAPTURE(name);
-        CHECK(glm::distance(judgeStandpoint(makeBuiltin(std::string("builtin:") + name)).view.up, kUp) < 1e-12);
+        CHECK(glm::distance(judgeStandpoint(makeBuiltin(std::string("builtin:") + name)).view.up, kUp) <
+              1e-12);
     }
     const Scene photograph = Maker().wall({-2, -1.5, 3}, {4, 0, 0}, {0, 3, 0}, 3000.0, 0.01).scene();
     const Standpoint at_photograph = checkFront(photograph, 1.0);
@@ -206,7 +226,8 @@ TEST_CASE("what is solid is no room, and a huge splat at the head of the file mo
         Scene scene = make().scene();
         scene.positions.front() = first.scene().positions.front();
         scene.scales.front() = first.scene().scales.front();
-        CHECK(glm::distance(judgeStandpoint(scene).view.eye, before.eye) < 0.05 * glm::distance(before.eye, before.look));
+        CHECK(glm::distance(judgeStandpoint(scene).view.eye, before.eye) <
+              0.05 * glm::distance(before.eye, before.look));
     }
 }
 

@@ -7,18 +7,26 @@
 namespace binosplat::test {
 
 // `sh_range`: of the harmonics above the constant one.
-inline Scene randomScene(int sh_degree, std::size_t splats, bool are_gaussians = true, float sh_range = 0.2f) {
+inline Scene randomScene(int sh_degree, std::size_t splats, bool are_gaussians = true,
+                         float sh_range = 0.2f) {
     std::mt19937 random(17);
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
     Scene scene;
     scene.sh_degree = sh_degree;
     for (std::size_t i = 0; i < splats; ++i) {
         scene.positions.emplace_back(3.0f * unit(random), 2.0f * unit(random), 50.0f * unit(random));
-        scene.rotations.push_back(glm::normalize(glm::quat(unit(random), unit(random), unit(random), unit(random))));
-        scene.scales.emplace_back(std::exp(-4.0f + 2.0f * unit(random)), std::exp(-4.0f + 2.0f * unit(random)));
-        if (are_gaussians) { scene.thicknesses.push_back(std::min(scene.scales[i].x, scene.scales[i].y) * (0.5f + 0.4f * unit(random))); }
+        scene.rotations.push_back(
+            glm::normalize(glm::quat(unit(random), unit(random), unit(random), unit(random))));
+        scene.scales.emplace_back(std::exp(-4.0f + 2.0f * unit(random)),
+                                  std::exp(-4.0f + 2.0f * unit(random)));
+        if (are_gaussians) {
+            scene.thicknesses.push_back(std::min(scene.scales[i].x, scene.scales[i].y) *
+                                        (0.5f + 0.4f * unit(random)));
+        }
         scene.opacities.push_back(0.5f + 0.5f * unit(random));
-        for (int k = 0; k < 3 * shCoefficientCount(sh_degree); ++k) { scene.sh.push_back((k < 3 ? 2.0f : sh_range) * unit(random)); }
+        for (int k = 0; k < 3 * shCoefficientCount(sh_degree); ++k) {
+            scene.sh.push_back((k < 3 ? 2.0f : sh_range) * unit(random));
+        }
     }
     return scene;
 }
@@ -39,7 +47,8 @@ inline double largest(const glm::dmat3& matrix) {
 
 // The largest differences between two scenes of the same degree, in the constant harmonics and in the others.
 // Splat i of `b` is order[i] of `a`, or i without an order.
-inline std::pair<float, float> shDifferences(const Scene& a, const Scene& b, const std::vector<std::uint32_t>& order = {}) {
+inline std::pair<float, float> shDifferences(const Scene& a, const Scene& b,
+                                             const std::vector<std::uint32_t>& order = {}) {
     const auto width = static_cast<std::size_t>(3 * shCoefficientCount(a.sh_degree));
     std::pair<float, float> most;
     for (std::size_t i = 0; i < b.sh.size(); ++i) {

@@ -10,7 +10,8 @@ SUITE(headsets) {
 TEST_CASE("every headset of the repository is one that a person could wear, and says who measured it") {
     std::set<std::string> names;
     int canted = 0;
-    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / "configs" / "headsets")) {
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / "configs" / "headsets")) {
         INFO(entry.path().string());
         CHECK(entry.path().extension() == ".toml");
         const Headset headset = readHeadset(entry.path());
@@ -62,7 +63,8 @@ TEST_CASE("canted eyes turn outwards") {
     for (const int side : {kLeft, kRight}) {
         const double outwards = side == kLeft ? -1.0 : 1.0;
         const glm::dvec3 ahead = eyes[side].world_from_camera.orientation * glm::dvec3(0, 0, 1);
-        CHECK(these(ahead.x, ahead.y) == these(doctest::Approx(outwards * std::sin(0.1)), doctest::Approx(0.0)));
+        CHECK(these(ahead.x, ahead.y) ==
+              these(doctest::Approx(outwards * std::sin(0.1)), doctest::Approx(0.0)));
         CHECK(eyes[side].world_from_camera.position.x == doctest::Approx(outwards * 0.032));
     }
     // The middle eye sees from the left eye's outer edge to the right eye's.
@@ -78,11 +80,13 @@ SCRIPT(headsets, "engine/setup/headsets") {
         (void)readHeadset(work.path / "h.toml");
         return "";
     };
-    runScript({[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
+    runScript(
+        {[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
 }
 
 TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres") {
-    const std::string top = "name = \"a\"\nsource = \"b\"\nsize = \"8x8\"\ncanting_deg = 0\neye_distance_m = 0.06\n";
+    const std::string top =
+        "name = \"a\"\nsource = \"b\"\nsize = \"8x8\"\ncanting_deg = 0\neye_distance_m = 0.06\n";
     const std::string left = "[left]\nleft = -50\nright = 40\nup = 45\ndown = -45\n",
                       right = "[right]\nleft = -40\nright = 50\nup = 45\ndown = -45\n";
     const auto read = [&](const std::string& text) {
@@ -92,7 +96,8 @@ TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres") {
     CHECK(read(top + left + right).lens_centres[kLeft] == glm::dvec3(0.0, 0.0, 1.0));
     const Headset named = read(top + left + "lens_centre = [-3, 2.5]\n" + right);
     CHECK(these(named.lens_centres[kLeft].x, named.lens_centres[kLeft].y, named.lens_centres[kRight]) ==
-          these(doctest::Approx(-std::tan(glm::radians(3.0))), doctest::Approx(-std::tan(glm::radians(2.5))), glm::dvec3(0.0, 0.0, 1.0)));
+          these(doctest::Approx(-std::tan(glm::radians(3.0))), doctest::Approx(-std::tan(glm::radians(2.5))),
+                glm::dvec3(0.0, 0.0, 1.0)));
 }
 
 }  // SUITE(headsets)

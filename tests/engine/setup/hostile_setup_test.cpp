@@ -16,9 +16,11 @@ struct TextAttempts {
     Workplace work;
     Tally tally;
 
-    TextAttempts(std::string what, std::function<void(const std::string& path)> reader) : name(std::move(what)), read(std::move(reader)) {}
+    TextAttempts(std::string what, std::function<void(const std::string& path)> reader)
+        : name(std::move(what)), read(std::move(reader)) {}
     ~TextAttempts() {
-        MESSAGE(fmt::format("{}: {} broken files, {} read, {} refused", name, tally.inputs, tally.read, tally.refused));
+        MESSAGE(fmt::format("{}: {} broken files, {} read, {} refused", name, tally.inputs, tally.read,
+                            tally.refused));
         CHECK(tally.refused > tally.inputs / 8);
         CHECK(peakMebibytes() < 512);
     }
@@ -34,7 +36,9 @@ struct TextAttempts {
     }
     // All kinds of damage.
     void run(const std::string& good, int changes) {
-        const Attempt one = [this](const std::string& what, const std::string& bytes) { attempt(what, bytes); };
+        const Attempt one = [this](const std::string& what, const std::string& bytes) {
+            attempt(what, bytes);
+        };
         truncate(good, one);
         flipBits(good, changes, one);
         spliceBytes(good, changes, one);
@@ -52,7 +56,9 @@ void readEverything(const std::string& path) {
             const auto ignoreRefusal = [](const auto& read) {
                 try {
                     (void)read();
-                } catch (const Error& error) { CHECK(std::string(error.what()).find('\n') == std::string::npos); }
+                } catch (const Error& error) {
+                    CHECK(std::string(error.what()).find('\n') == std::string::npos);
+                }
             };
             const Setting& value = setting;
             ignoreRefusal([&] { return readNumber(value, -1e6, 1e6); });
@@ -67,7 +73,9 @@ void readEverything(const std::string& path) {
 }
 
 void readCameras(const std::string& path) {
-    for (const FileCamera& camera : readCameraFile(path, glm::dvec3(0.0))) { CHECK(camera.eye.size_px.x >= 1); }
+    for (const FileCamera& camera : readCameraFile(path, glm::dvec3(0.0))) {
+        CHECK(camera.eye.size_px.x >= 1);
+    }
 }
 
 // `changes` times each kind of damage.
@@ -75,16 +83,20 @@ void breakAll(int changes) {
     TextAttempts settings("settings", readEverything);
     // Every key of the file gets a value: what is commented out cannot be damaged.
     std::string every_key = textOf("configs/default.toml").substr(0, 1500);
-    for (std::size_t at = every_key.find("[camera]"); (at = every_key.find("\n# ", at)) != std::string::npos;) {
+    for (std::size_t at = every_key.find("[camera]");
+         (at = every_key.find("\n# ", at)) != std::string::npos;) {
         every_key.erase(at + 1, 2);
     }
     settings.run(every_key, changes);
     settings.run(
-        "[bench]\nscenes = [\"a\", \"b\"]\nrepeats = 3\n[[methods]]\nname = 'x'\nbudget = [0.1, 2e-1]\n[[views]]\nfov_x = 90\n"
+        "[bench]\nscenes = [\"a\", \"b\"]\nrepeats = 3\n[[methods]]\nname = 'x'\nbudget = [0.1, "
+        "2e-1]\n[[views]]\nfov_x = 90\n"
         "when = 1979-05-27\n",
         changes);
     TextAttempts headsets("headsets", [](const std::string& path) { (void)readHeadset(path); });
-    for (const char* headset : {"configs/headsets/quest3.toml", "configs/headsets/index.toml"}) { headsets.run(textOf(headset), changes); }
+    for (const char* headset : {"configs/headsets/quest3.toml", "configs/headsets/index.toml"}) {
+        headsets.run(textOf(headset), changes);
+    }
     TextAttempts("cameras", readCameras)
         .run(R"([{"id": 0, "img_name": "a", "width": 640, "height": 480, "position": [1, 2, -3.5],
  "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "fx": 500, "fy": 501.5, "cx": 320, "cy": 240},
@@ -115,26 +127,33 @@ TEST_CASE("settings as deep as a file can be, or in strange letters, are read or
     for (int i = 0; i < 100'000; ++i) { tables += "{a="; }
     for (int i = 0; i < 300'000; ++i) { dotted += ".a"; }
     attempts.attempt("deep tables", "a = " + tables);
-    const auto around = [&](const std::string& what, const std::string& letter, std::initializer_list<const char*> texts) {
-        for (const char* text : texts) { attempts.attempt(what, fmt::format(fmt::runtime(text), letter, letter)); }
+    const auto around = [&](const std::string& what, const std::string& letter,
+                            std::initializer_list<const char*> texts) {
+        for (const char* text : texts) {
+            attempts.attempt(what, fmt::format(fmt::runtime(text), letter, letter));
+        }
     };
     around("deep keys", dotted, {"{} = 1\n", "[{}]\nb = 1\n", "[[{}]]\nb = 1\n"});
     for (const char* letter : {"\u00a1", "\u03e2", "\u0499", "\u2000", "\u3000", "\ufeff", "\xff", "\xc3"}) {
         around("not ASCII", letter,
-               {"a = {}\n", "{} = 1\n", "a = 1 {}\n", "a = [1, {}]\n", "a = \"{}\"\n", "# {}\n", "{}a = 1\n", "a = '{}'{}\n"});
+               {"a = {}\n", "{} = 1\n", "a = 1 {}\n", "a = [1, {}]\n", "a = \"{}\"\n", "# {}\n", "{}a = 1\n",
+                "a = '{}'{}\n"});
     }
     // Quotes that toml++ does not take for quotes: more of a word that is already wrong.
     for (const char* letter : {"\u00e9", "\ufbd0", "\ufef7"}) {
         around("letters that look like quotes", letter,
-               {"a = 2\"{}\"\n", "a = -2[\"{}\"]\n", "a = [--2[\"{}\"]]\n", "a = 2=\"{}\"\n", "a = [\nb=\"{}\"]\n", "a = [-{{\"{}\"\n",
-                "a = 2]\"{}\"\n", "a = [[\"x\"]-\"{}\"]\n", "a = 2 [\"{}\"]\n", "a = \"\\\n\"{}\"\n"});
+               {"a = 2\"{}\"\n", "a = -2[\"{}\"]\n", "a = [--2[\"{}\"]]\n", "a = 2=\"{}\"\n",
+                "a = [\nb=\"{}\"]\n", "a = [-{{\"{}\"\n", "a = 2]\"{}\"\n", "a = [[\"x\"]-\"{}\"]\n",
+                "a = 2 [\"{}\"]\n", "a = \"\\\n\"{}\"\n"});
     }
     attempts.attempt("several lines", "a = \"\"\"\nb\n\"\"\"\n");
     attempts.attempt("a line break in a key", "\"a\\nb\" = 1\n[c]\n[c.d]\n");
     attempts.attempt("a line break in a table's name", "[\"a\\nb\"]\nc = {d = 1}\n");
 }
 
-TEST_CASE_FIXTURE(AtWork, "letters outside of ASCII are read in quotes and comments and refused elsewhere, with their line") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "letters outside of ASCII are read in quotes and comments and refused elsewhere, with their line") {
     const auto read = [&](const std::string& text) {
         std::ofstream(work.path / "letters.toml", std::ios::binary) << text;
         (void)readSettingsFile(work.path / "letters.toml");
@@ -142,11 +161,13 @@ TEST_CASE_FIXTURE(AtWork, "letters outside of ASCII are read in quotes and comme
     CHECK_NOTHROW(read("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n"));
     // Wherever TOML allows quotes around a text or a key.
     CHECK_FALSE(
-        files::findUnreadableToml("a = [\"\u00e9\", [\n'\u00e9', 1 , \"\u00e9\"]]\nb = {c = \"\u00e9\", d.e=[\"\u00e9\"], f = '\u00e9'}\n"
+        files::findUnreadableToml("a = [\"\u00e9\", [\n'\u00e9', 1 , \"\u00e9\"]]\nb = {c = \"\u00e9\", "
+                                  "d.e=[\"\u00e9\"], f = '\u00e9'}\n"
                                   "[\"\u00e9\"]\n[[g]]\n\"\u00e9\" = 1\n"));
-    for (const auto& [text, message] : {std::pair("a = 1\nb = \u00e9\n", "letters.toml:2: a letter that is neither ASCII"),
-                                        {"a = 1\n\nb = '''x'''\n", "letters.toml:3: a text over several lines"},
-                                        {"a = 1\nb = 2\"\u00e9\"\n", "letters.toml:2: quotes within a word"}}) {
+    for (const auto& [text, message] :
+         {std::pair("a = 1\nb = \u00e9\n", "letters.toml:2: a letter that is neither ASCII"),
+          {"a = 1\n\nb = '''x'''\n", "letters.toml:3: a text over several lines"},
+          {"a = 1\nb = 2\"\u00e9\"\n", "letters.toml:2: quotes within a word"}}) {
         CHECK_THROWS_WITH_AS(read(text), doctest::Contains(message), Error);
     }
 }

@@ -8,9 +8,13 @@ SUITE(motion) {
 constexpr double kQuarter = std::numbers::pi / 2.0;
 const std::string kHeader = "timestamp,x,y,z,qx,qy,qz,qw\n";
 
-HeadMotion parse(const std::string& text, MotionAxes axes = MotionAxes::kOpenXr) { return parseHeadMotion(text, "m.csv", axes); }
+HeadMotion parse(const std::string& text, MotionAxes axes = MotionAxes::kOpenXr) {
+    return parseHeadMotion(text, "m.csv", axes);
+}
 
-void checkRefused(const std::string& text, const char* message) { CHECK_THROWS_WITH_AS(parse(text), doctest::Contains(message), Error); }
+void checkRefused(const std::string& text, const char* message) {
+    CHECK_THROWS_WITH_AS(parse(text), doctest::Contains(message), Error);
+}
 
 bool near(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-9; }
 
@@ -23,7 +27,7 @@ TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
         MotionAxes axes;
         glm::dvec3 about;                    // a positive quarter turn about this axis of the recording
         glm::dvec3 forward, up_of_the_head;  // the directions that result, in the camera's axes
-    } const turns[]{                         // Right-handed: a turn about y (up) looks left, about x up, about z tilts to the left.
+    } const turns[]{// Right-handed: a turn about y (up) looks left, about x up, about z tilts to the left.
                     {MotionAxes::kOpenXr, up, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}},
                     {MotionAxes::kOpenXr, right, {0.0, -1.0, 0.0}, {0.0, 0.0, -1.0}},
                     {MotionAxes::kOpenXr, back, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}},
@@ -46,8 +50,11 @@ TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
 }
 
 TEST_CASE("headers, blanks and comments are optional, and orientations are normalised") {
-    for (const std::string& text : {kHeader + "0,1,2,3,0,0,0,1\n0.5,1,2,3,0,0,0,1\n", std::string("0,1,2,3,0,0,0,1.01\n0.5,1,2,3,0,0,0,1"),
-                                    std::string("\xef\xbb\xbf# a walk\r\n\r\n 0 ,\t1, 2,3 ,0,0,0,1 \r\n0.5,1,+2,3e0,0,0,0,1\r\n\r\n")}) {
+    for (const std::string& text :
+         {kHeader + "0,1,2,3,0,0,0,1\n0.5,1,2,3,0,0,0,1\n",
+          std::string("0,1,2,3,0,0,0,1.01\n0.5,1,2,3,0,0,0,1"),
+          std::string(
+              "\xef\xbb\xbf# a walk\r\n\r\n 0 ,\t1, 2,3 ,0,0,0,1 \r\n0.5,1,+2,3e0,0,0,0,1\r\n\r\n")}) {
         const HeadMotion motion = parse(text);
         REQUIRE(motion.samples().size() == 2);
         CHECK(motion.duration_s() == 0.5);
@@ -64,7 +71,8 @@ TEST_CASE("headers, blanks and comments are optional, and orientations are norma
 TEST_CASE("times are seconds or ticks, by their size or by the header") {
     const std::string pose = ",0,0,0,0,0,0,1\n";
     // Two ticks of 100 ns apart, in numbers so large that a double cannot represent single ticks.
-    CHECK(parse("637139354998275741" + pose + "637139354998275743" + pose).duration_s() == doctest::Approx(2e-7).epsilon(1e-12));
+    CHECK(parse("637139354998275741" + pose + "637139354998275743" + pose).duration_s() ==
+          doctest::Approx(2e-7).epsilon(1e-12));
     CHECK(parse("1700000000.25" + pose + "1700000000.5" + pose).duration_s() == 0.25);
     CHECK(parse("-1" + pose + "1" + pose).duration_s() == 2.0);
     for (const auto& [name, seconds] : {std::pair("time", 2000.0),
@@ -74,7 +82,8 @@ TEST_CASE("times are seconds or ticks, by their size or by the header") {
                                         {"timestamp_ns", 2e-6},
                                         {"time_ticks", 2e-4}}) {
         CAPTURE(std::string(name));
-        CHECK(parse(name + (",x,y,z,qx,qy,qz,qw\n1000" + pose) + "3000" + pose).duration_s() == doctest::Approx(seconds).epsilon(1e-12));
+        CHECK(parse(name + (",x,y,z,qx,qy,qz,qw\n1000" + pose) + "3000" + pose).duration_s() ==
+              doctest::Approx(seconds).epsilon(1e-12));
     }
     checkRefused("1700000000000" + pose, "m.csv:1: time is 1700000000000");
     checkRefused("1700000000000000000" + pose, "unit in a header");
@@ -84,9 +93,11 @@ SCRIPT(motion, "engine/setup/motion") {
     const auto read = [](const std::string& text) {
         const HeadMotion motion = parse(unescaped(text));
         CHECK(motion.startingAt(0.5 * motion.duration_s()).note() == motion.note());
-        return fmt::format("{} s\n{}{}", motion.duration_s(), motion.note(), motion.note().empty() ? "" : "\n");
+        return fmt::format("{} s\n{}{}", motion.duration_s(), motion.note(),
+                           motion.note().empty() ? "" : "\n");
     };
-    runScript({[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
+    runScript(
+        {[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
 }
 
 TEST_CASE("what is no file is no recording") {
@@ -131,12 +142,14 @@ TEST_CASE("a camera starts where it is put and moves in its own frame") {
 }
 
 TEST_CASE("a segment's frames are its samples, or at a rate, and its end is not one of them") {
-    const HeadMotion motion =
-        parseHeadMotion("0,0,0,0,0,0,0,1\n0.5,1,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n2,3,0,0,0,0,0,1\n", "m", MotionAxes::kOpenXr);
+    const HeadMotion motion = parseHeadMotion(
+        "0,0,0,0,0,0,0,1\n0.5,1,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n2,3,0,0,0,0,0,1\n", "m", MotionAxes::kOpenXr);
     using Times = std::vector<double>;
-    CHECK(these(frameTimes(motion, {}, "m"), frameTimes(motion, {0.0, 1.0, {}}, "m"), frameTimes(motion, {0.0, {}, 2.0}, "m")) ==
+    CHECK(these(frameTimes(motion, {}, "m"), frameTimes(motion, {0.0, 1.0, {}}, "m"),
+                frameTimes(motion, {0.0, {}, 2.0}, "m")) ==
           these(Times{0.0, 0.5, 1.0, 2.0}, Times{0.0, 0.5}, Times{0.0, 0.5, 1.0, 1.5, 2.0}));
-    CHECK(these(frameTimes(motion, {0.0, 1.0, 2.0}, "m"), frameTimes(motion, {0.0, 2.0, 90.0}, "m").size()) == these(Times{0.0, 0.5}, 180));
+    CHECK(these(frameTimes(motion, {0.0, 1.0, 2.0}, "m"), frameTimes(motion, {0.0, 2.0, 90.0}, "m").size()) ==
+          these(Times{0.0, 0.5}, 180));
     CHECK(frameTimes(motion, {0.0, 100.0, 2.0}, "m").size() == 5);  // not beyond the end of the recording
     // From between two samples on, relative to the pose there.
     const HeadMotion rest = motion.startingAt(0.75);
@@ -150,7 +163,8 @@ TEST_CASE("the shared recording reads, and its wearer walks forward" * test::nee
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }
     const HeadMotion motion = readHeadMotion(*data / "headmotion" / "User3.csv", MotionAxes::kUnity);
-    CHECK(these(motion.samples().size(), motion.duration_s()) == these(4597, doctest::Approx(76.5515291).epsilon(1e-9)));
+    CHECK(these(motion.samples().size(), motion.duration_s()) ==
+          these(4597, doctest::Approx(76.5515291).epsilon(1e-9)));
     // Whenever the head moves at 0.4 m/s or more, it moves along its line of sight rather than against it. If
     // read in OpenXR's axes, the same recording would show somebody who walks backwards: it was made in
     // Unity's.

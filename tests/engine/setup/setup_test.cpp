@@ -17,7 +17,9 @@ fs::path writeFile(const fs::path& path, const std::string& text) {
     return path;
 }
 
-TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, its rows as they are written, and resizing an eye keeps what it sees") {
+TEST_CASE_FIXTURE(AtWork,
+                  "a camera file is world-from-camera, its rows as they are written, and resizing an eye "
+                  "keeps what it sees") {
     // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its
     // x axis is (0, 0, -1).
     const auto cameras = readCameraFile(writeFile(work.path / "c.json", R"([
@@ -31,14 +33,16 @@ TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, its rows as they 
     CHECK(these(cameras[0].name, cameras[1].name) == these("a", "1"));
     CHECK(glm::length(transform(eye.world_from_camera, {0, 0, 1}) - glm::dvec3(2, 2, 3)) < 1e-12);
     CHECK(glm::length(transform(eye.world_from_camera, {1, 0, 0}) - glm::dvec3(1, 2, 2)) < 1e-12);
-    CHECK(these(eye.size_px, eye.intrinsics.cx, eye.intrinsics.cy) == these(glm::uvec2(640, 480), 320.0, 240.0));
+    CHECK(these(eye.size_px, eye.intrinsics.cx, eye.intrinsics.cy) ==
+          these(glm::uvec2(640, 480), 320.0, 240.0));
     const Eye half = resize(cameras[1].eye, {320, 240});
-    CHECK(these(half.intrinsics.fx, half.intrinsics.fy, half.intrinsics.cx, half.intrinsics.cy, half.size_px) ==
-          these(250.0, 255.0, 150.0, 100.0, glm::uvec2(320, 240)));
+    CHECK(these(half.intrinsics.fx, half.intrinsics.fy, half.intrinsics.cx, half.intrinsics.cy,
+                half.size_px) == these(250.0, 255.0, 150.0, 100.0, glm::uvec2(320, 240)));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a Git LFS pointer is named as what it is") {
-    const fs::path file = writeFile(work.path / "pointer", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+    const fs::path file = writeFile(work.path / "pointer",
+                                    "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
     const doctest::Contains said(": is a Git LFS pointer");
     CHECK_THROWS_WITH_AS((void)readSettingsFile(file), said, Error);
     CHECK_THROWS_WITH_AS((void)readCameraFile(file, glm::dvec3(0.0)), said, Error);
@@ -53,7 +57,8 @@ TEST_CASE("numbers are read whole") {
     }
 }
 
-TEST_CASE_FIXTURE(AtWork, "output files appear together or not at all, and a run that fails keeps what was there") {
+TEST_CASE_FIXTURE(AtWork,
+                  "output files appear together or not at all, and a run that fails keeps what was there") {
     const fs::path folder = work.path / "a" / "b";
     const auto write = [&](const std::string& text, bool publishes) {
         OutputFiles files(folder);
@@ -69,13 +74,15 @@ TEST_CASE_FIXTURE(AtWork, "output files appear together or not at all, and a run
     CHECK(these(fs::file_size(folder / "one"), fs::file_size(folder / "two")) == these(1, 1));
 }
 
-TEST_CASE_FIXTURE(AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
+TEST_CASE_FIXTURE(
+    AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
     fs::path folder = work.path;
     constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, but 40 more letters do not
     while (folder.string().size() + 102 < kLength) { folder /= std::string(100, 'x'); }
     folder /= std::string(kLength - folder.string().size() - 1, 'y');
-    CHECK_THROWS_WITH_AS(OutputFiles{folder}, doctest::Contains("its path may be too long, with 4046 letters; must be a shorter one"),
-                         Error);
+    CHECK_THROWS_WITH_AS(
+        OutputFiles{folder},
+        doctest::Contains("its path may be too long, with 4046 letters; must be a shorter one"), Error);
     CHECK(work.isEmpty());
 }
 
@@ -83,7 +90,9 @@ TEST_CASE_FIXTURE(AtWork, "a folder is removed with all in it, and what its link
     const fs::path kept = work.path / "kept", gone = work.path / "gone";
     fs::create_directories(kept);
     fs::create_directories(gone / "a" / "b");
-    for (const fs::path& file : {kept / "1", gone / "1", gone / "a" / "2", gone / "a" / "b" / "3"}) { writeText(file, "x"); }
+    for (const fs::path& file : {kept / "1", gone / "1", gone / "a" / "2", gone / "a" / "b" / "3"}) {
+        writeText(file, "x");
+    }
     fs::create_directory_symlink(kept, gone / "a" / "link");
     fs::create_directory_symlink(gone, gone / "a" / "round");
     CHECK(entriesOf(gone).size() == 2);

@@ -19,12 +19,15 @@ std::string writtenSplit() {
     static const Workplace place;
     const std::string folder = (place.path / "split").string();
     if (place.isEmpty()) {
-        splitScene(makeBuiltin("builtin:atelier", 20'000), folder, {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
+        splitScene(makeBuiltin("builtin:atelier", 20'000), folder,
+                   {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
     }
     return folder;
 }
 
-std::unique_ptr<ChunkSource> open(const std::string& source) { return std::make_unique<ChunkSource>(source, WebSettings()); }
+std::unique_ptr<ChunkSource> open(const std::string& source) {
+    return std::make_unique<ChunkSource>(source, WebSettings());
+}
 
 // One level of every leaf.
 std::vector<LeafLevel> everyLeaf(const ChunkSource& source, std::uint32_t level) {
@@ -60,14 +63,17 @@ TEST_CASE("what is wished for comes whole, the coarsest level before any finer o
         const LeafLevel at = parts[i].at;
         CHECK(at.level == (i < 32 ? 3 : 0));
         const LodRange& range = source.leaves()[at.leaf].levels[at.level];
-        if (!files.contains(range.file)) { files[range.file] = loadScene(writtenSplit() + "/" + source.meta().files[range.file]); }
+        if (!files.contains(range.file)) {
+            files[range.file] = loadScene(writtenSplit() + "/" + source.meta().files[range.file]);
+        }
         const Scene& file = files[range.file];
         REQUIRE(parts[i].splats == range.splats.count);
         REQUIRE(parts[i].scene.size() == range.splats.count);
         const auto begin = file.positions.begin() + static_cast<std::ptrdiff_t>(range.splats.first);
         CHECK(std::equal(parts[i].scene.positions.begin(), parts[i].scene.positions.end(), begin));
         const auto lies_outside = [&leaf = source.leaves()[at.leaf]](const glm::vec3& p) {
-            return glm::any(glm::lessThan(p, leaf.low - 0.01f)) || glm::any(glm::greaterThan(p, leaf.high + 0.01f));
+            return glm::any(glm::lessThan(p, leaf.low - 0.01f)) ||
+                   glm::any(glm::greaterThan(p, leaf.high + 0.01f));
         };
         CHECK(std::ranges::none_of(parts[i].scene.positions, lies_outside));
         CHECK(parts[i].scene.isGaussian3d());
@@ -76,8 +82,9 @@ TEST_CASE("what is wished for comes whole, the coarsest level before any finer o
     CHECK(files.size() > 4);
     const std::optional<LoaderWork> work = loader.tryWork();
     REQUIRE(work.has_value());
-    CHECK(work->splats == std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
-                                          [](std::uint64_t sum, const LoadedPart& part) { return sum + part.splats; }));
+    CHECK(work->splats ==
+          std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
+                          [](std::uint64_t sum, const LoadedPart& part) { return sum + part.splats; }));
     CHECK(work->seconds > 0.0);
 }
 
@@ -115,8 +122,9 @@ TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") 
 }
 
 TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says so, and the others come") {
-    const auto check = [&](const std::string& source, const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer,
-                           const std::vector<LeafLevel>& come, const std::string& line) {
+    const auto check = [&](const std::string& source, const std::vector<LeafLevel>& coarsest,
+                           const std::vector<LeafLevel>& finer, const std::vector<LeafLevel>& come,
+                           const std::string& line) {
         ChunkLoader loader(open(source), {});
         REQUIRE(loader.source().leaves().size() == 4);  // with the environment
         loader.want(coarsest, finer);
@@ -127,20 +135,24 @@ TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says s
               these(true, std::vector<bool>{false, true, false, false}, true));
     };
     // Ranges beyond the end of a chunk break only that chunk.
-    const std::string longer = replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)");
+    const std::string longer =
+        replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)");
     check(writeStreamed(folder, "scene", longer), {{2, 0}, {0, 1}}, {}, {{0, 1}},
           "a leaf names splat 8 of filenames[1] (b/meta.json), which has 8");
     const std::string source = writeStreamed(folder, "scene", makeLodMeta());
     std::filesystem::remove(source + "/b/q.webp");
-    check(source, {{3, 0}, {0, 1}, {1, 1}, {2, 0}}, {{0, 0}, {1, 0}}, {{3, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}}, "b/q.webp: no such file");
+    check(source, {{3, 0}, {0, 1}, {1, 1}, {2, 0}}, {{0, 0}, {1, 0}},
+          {{3, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}}, "b/q.webp: no such file");
 }
 
 #ifdef BINOSPLAT_WEB_TESTS
-TEST_CASE_FIXTURE(InFolder, "a server that goes away in the middle is waited for: one line, and the rest when it is back") {
+TEST_CASE_FIXTURE(
+    InFolder, "a server that goes away in the middle is waited for: one line, and the rest when it is back") {
     const WebPages files = filesOf(writtenSplit());
     std::atomic<bool> is_down = false;
-    const WebServer server(
-        [&](const WebRequest& request) { return is_down ? answer("503 Service Unavailable") : answerFrom(files, request); });
+    const WebServer server([&](const WebRequest& request) {
+        return is_down ? answer("503 Service Unavailable") : answerFrom(files, request);
+    });
     WebSettings web = webSettings(folder);
     web.fetch.attempts = 1;
     LoaderSettings settings;

@@ -17,7 +17,8 @@ std::vector<LodLeaf> makeField(int n, std::uint32_t levels = 4, std::uint64_t sp
             LodLeaf leaf{low, low + 1.0f, {}};
             for (std::uint32_t level = 0; level < levels; ++level) {
                 const std::uint64_t count = splats >> (2 * level);
-                leaf.levels.push_back({level, level, {static_cast<std::uint64_t>(leaves.size()) * count, count}});
+                leaf.levels.push_back(
+                    {level, level, {static_cast<std::uint64_t>(leaves.size()) * count, count}});
             }
             leaves.push_back(std::move(leaf));
         }
@@ -37,7 +38,8 @@ struct Chooser {
     LevelChooser chooser{leaves};
 
     explicit Chooser(std::vector<LodLeaf> of) : leaves(std::move(of)) {}
-    const LevelChoices& choose(const Eye& eye, const ChoiceSettings& settings, const LevelsThere& there = {}) {
+    const LevelChoices& choose(const Eye& eye, const ChoiceSettings& settings,
+                               const LevelsThere& there = {}) {
         return chooser.choose(std::span(&eye, 1), settings, there);
     }
 };
@@ -51,7 +53,9 @@ ChoiceSettings within(std::uint64_t splats) {
 
 std::uint64_t splatsOf(const std::vector<LodLeaf>& leaves, const std::vector<std::uint32_t>& levels) {
     std::uint64_t sum = 0;
-    for (std::size_t l = 0; l < leaves.size(); ++l) { sum += levels[l] == kNone ? 0 : leaves[l].levels[levels[l]].splats.count; }
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+        sum += levels[l] == kNone ? 0 : leaves[l].levels[levels[l]].splats.count;
+    }
     return sum;
 }
 
@@ -104,10 +108,13 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
         before = level;
         if (z < 2) { continue; }
         // The step that was not taken would have led below half a pixel; the last one that was taken did not.
-        const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
+        const double size_px =
+            500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
         const auto apart = [&](std::uint32_t a, std::uint32_t b) {
             const auto& levels = field.leaves[z * 64 + 32].levels;
-            return size_px / std::pow(static_cast<double>(levels[a].splats.count) * static_cast<double>(levels[b].splats.count), 0.25);
+            return size_px / std::pow(static_cast<double>(levels[a].splats.count) *
+                                          static_cast<double>(levels[b].splats.count),
+                                      0.25);
         };
         if (level > 0) { CHECK(apart(level, level - 1) < 0.5); }
         if (level < 5) { CHECK(apart(level + 1, level) >= 0.5); }
@@ -116,7 +123,9 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
     CHECK(before > 0);
 }
 
-TEST_CASE("levels that are off by more than 36 dB are chosen only where their splats are twice as close as other levels'") {
+TEST_CASE(
+    "levels that are off by more than 36 dB are chosen only where their splats are twice as close as other "
+    "levels'") {
     const Eye eye = eyeAt({0.5, 0.5, -1.0});
     std::vector<LodLeaf> leaves = makeField(64, 6);
     const auto levelsOf = [&](const std::vector<float>& errors) {
@@ -135,9 +144,11 @@ TEST_CASE("levels that are off by more than 36 dB are chosen only where their sp
         finer += level < usual;
         if (level < 2) { continue; }
         // A quarter of a pixel.
-        const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
+        const double size_px =
+            500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
         const auto& levels = leaves[z * 64 + 32].levels;
-        const double between = static_cast<double>(levels[level].splats.count) * static_cast<double>(levels[level - 1].splats.count);
+        const double between = static_cast<double>(levels[level].splats.count) *
+                               static_cast<double>(levels[level - 1].splats.count);
         CHECK(size_px / std::pow(between, 0.25) < 0.25);
     }
     CHECK(finer > 0);
@@ -150,7 +161,8 @@ TEST_CASE("what lies behind is the first to go and the last to come") {
         const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, 8.5}, yaw_rad), within(300'000));
         std::array<std::uint64_t, 2> sum{};
         for (std::size_t l = 0; l < field.leaves.size(); ++l) {
-            sum[field.leaves[l].low.z < 8.0f ? 1 : 0] += field.leaves[l].levels[choices.levels[l]].splats.count;
+            sum[field.leaves[l].low.z < 8.0f ? 1 : 0] +=
+                field.leaves[l].levels[choices.levels[l]].splats.count;
         }
         return sum;
     };
@@ -160,7 +172,9 @@ TEST_CASE("what lies behind is the first to go and the last to come") {
     CHECK(2 * turned[0] < ahead[0]);
 }
 
-TEST_CASE("where it was measured what levels are off by, splats go to where they mend most, whatever lies before it") {
+TEST_CASE(
+    "where it was measured what levels are off by, splats go to where they mend most, whatever lies before "
+    "it") {
     const Eye eye = eyeAt({0.5, 0.5, 2.0});
     const auto budget = within(8 * 16384);
     std::vector<LodLeaf> leaves = makeField(4);
@@ -186,7 +200,8 @@ TEST_CASE("where it was measured what levels are off by, splats go to where they
     // A level that improves nothing comes after all that do, and keeps none of them away.
     for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.001f, 0.001f}; }
     Chooser flat(leaves);
-    CHECK(std::ranges::all_of(flat.choose(eye, within(1 << 24)).levels, [](std::uint32_t level) { return level == 0; }));
+    CHECK(std::ranges::all_of(flat.choose(eye, within(1 << 24)).levels,
+                              [](std::uint32_t level) { return level == 0; }));
 }
 
 TEST_CASE("a head that trembles changes nothing") {
@@ -198,7 +213,8 @@ TEST_CASE("a head that trembles changes nothing") {
         const std::vector<std::uint32_t> at_rest = field.choose(eyeAt(place), within(budget)).levels;
         CHECK(field.choose(eyeAt(place), within(budget)).levels == at_rest);
         for (int i = 0; i < 200; ++i) {
-            const Eye eye = eyeAt(place + glm::dvec3(tremor(random), tremor(random), tremor(random)), tremor(random));
+            const Eye eye =
+                eyeAt(place + glm::dvec3(tremor(random), tremor(random), tremor(random)), tremor(random));
             CHECK(field.choose(eye, within(budget)).levels == at_rest);
         }
     }
@@ -210,7 +226,8 @@ TEST_CASE("a slow walk changes the level of a leaf once each time it comes neare
     const std::size_t leaves = before.size();
     std::size_t changes = 0, coarser = 0;
     for (int step = 0; step < 320; ++step) {
-        const std::vector<std::uint32_t> now = field.choose(eyeAt({0.5, 0.5, -30.0 + 0.05 * step}), within(1 << 24)).levels;
+        const std::vector<std::uint32_t> now =
+            field.choose(eyeAt({0.5, 0.5, -30.0 + 0.05 * step}), within(1 << 24)).levels;
         for (std::size_t l = 0; l < leaves; ++l) {
             coarser += now[l] > before[l];
             changes += now[l] != before[l];

@@ -39,7 +39,8 @@ inline Scene shakenAtelier(int frame, int first) {
 inline void writeFilm(const std::string& folder, int count, const std::function<Scene(int frame)>& frameAt) {
     std::filesystem::create_directories(folder);
     for (int frame = 0; frame < count; ++frame) {
-        writePly(frameAt(frame), (std::filesystem::path(folder) / fmt::format("frame_{:04}.ply", frame + 1)).string());
+        writePly(frameAt(frame),
+                 (std::filesystem::path(folder) / fmt::format("frame_{:04}.ply", frame + 1)).string());
     }
 }
 

@@ -33,14 +33,16 @@ Scene unpacked(const SceneFrame& frame, const SceneTraits& traits) {
 
 // Whether the box contains everything that can be seen of the splat.
 bool holds(const glm::vec3& low, const glm::vec3& high, const Scene& scene, std::size_t splat) {
-    const glm::dvec3 half = halfExtentOf(scene.rotations[splat], {scene.scales[splat], 0.0f}, scene.opacities[splat]),
+    const glm::dvec3 half = halfExtentOf(scene.rotations[splat], {scene.scales[splat], 0.0f},
+                                         scene.opacities[splat]),
                      centre(scene.positions[splat]);
     return glm::all(glm::lessThanEqual(glm::dvec3(low), centre - half + 1e-5)) &&
            glm::all(glm::greaterThanEqual(glm::dvec3(high), centre + half - 1e-5));
 }
 
 bool oneHolds(const std::vector<SceneChange>& boxes, const Scene& scene, std::size_t splat) {
-    return std::ranges::any_of(boxes, [&](const SceneChange& box) { return holds(box.low, box.high, scene, splat); });
+    return std::ranges::any_of(
+        boxes, [&](const SceneChange& box) { return holds(box.low, box.high, scene, splat); });
 }
 
 Scene withoutSh(Scene scene) {
@@ -59,10 +61,13 @@ TEST_CASE("what stayed as it was differs nowhere, and a step has the pages that 
     moved.opacities[5001] = 0.0f;
     const SceneFrame second = makeSceneFrame(moved, traits);
     const std::size_t page = 5000 / gpu::kPageSplats;
-    for (std::size_t p = 0; p < first.size(); ++p) { CHECK(std::ranges::equal(first[p].bytes(), second[p].bytes()) == (p != page)); }
+    for (std::size_t p = 0; p < first.size(); ++p) {
+        CHECK(std::ranges::equal(first[p].bytes(), second[p].bytes()) == (p != page));
+    }
     CHECK(bytesIn(second) == first.size() * first[page].bytes().size());
     const FrameStep step = stepBetween(first, second, traits);
-    CHECK(these(step.splats, step.pages) == these(scene.size(), std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)}));
+    CHECK(these(step.splats, step.pages) ==
+          these(scene.size(), std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)}));
     REQUIRE(step.now.size() == 1);
     CHECK(std::ranges::equal(step.now[0].bytes(), second[page].bytes()));
     // Where both were, and where the first one is now.
@@ -73,7 +78,8 @@ TEST_CASE("what stayed as it was differs nowhere, and a step has the pages that 
     CHECK(stepBetween(first, first, traits).changes.empty());
 }
 
-TEST_CASE("all that moved lies in boxes, no more than there may be, and what came or went at the end does, too") {
+TEST_CASE(
+    "all that moved lies in boxes, no more than there may be, and what came or went at the end does, too") {
     const Scene from = slidingAtelier(0), to = slidingAtelier(3);
     const SceneTraits traits = traitsOf(from);
     const SceneFrame whole = makeSceneFrame(from, traits);
@@ -124,11 +130,14 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
         std::size_t changed = 0, not_held = 0;
         for (std::size_t i = 0; i < got.size(); ++i) {
             // For a small turn, normalised lerp and slerp agree up to its cube.
-            const glm::quat turn = glm::slerp(glm::normalize(from.rotations[i]), glm::normalize(to.rotations[i]), share);
-            worst = std::max({worst, glm::distance(got.positions[i], glm::mix(from.positions[i], to.positions[i], share)),
-                              glm::distance(got.scales[i], glm::mix(from.scales[i], to.scales[i], share)),
-                              std::abs(got.opacities[i] - glm::mix(from.opacities[i], to.opacities[i], share)),
-                              1.0f - std::abs(glm::dot(got.rotations[i], turn)), std::abs(1.0f - glm::length(got.rotations[i]))});
+            const glm::quat turn =
+                glm::slerp(glm::normalize(from.rotations[i]), glm::normalize(to.rotations[i]), share);
+            worst = std::max(
+                {worst, glm::distance(got.positions[i], glm::mix(from.positions[i], to.positions[i], share)),
+                 glm::distance(got.scales[i], glm::mix(from.scales[i], to.scales[i], share)),
+                 std::abs(got.opacities[i] - glm::mix(from.opacities[i], to.opacities[i], share)),
+                 1.0f - std::abs(glm::dot(got.rotations[i], turn)),
+                 std::abs(1.0f - glm::length(got.rotations[i]))});
             for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
                 worst = std::max(worst, 0.1f * std::abs(got.sh[c] - glm::mix(from.sh[c], to.sh[c], share)));
             }
@@ -139,7 +148,9 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
             }
             // The bounds by which the device culls contain all of it.
             const std::size_t p = i / gpu::kPageSplats;
-            if (got.opacities[i] >= gpu::kMinAlpha) { not_held += !holds(mixed[p].pages()[0].low, mixed[p].pages()[0].high, got, i); }
+            if (got.opacities[i] >= gpu::kMinAlpha) {
+                not_held += !holds(mixed[p].pages()[0].low, mixed[p].pages()[0].high, got, i);
+            }
         }
         CHECK(worst < 2e-4f);
         CHECK(changed == 0);

@@ -42,7 +42,8 @@ TEST_CASE("with room for all every frame is read once, in order, and stays") {
     want(loader, from(4));
     for (std::size_t scene = 0; scene < kScenes; ++scene) {
         waitUntil([&] { return loader.tryGet(scene) != nullptr; });
-        CHECK(std::ranges::equal(loader.get(scene)->splats.front().bytes(), makeSceneFrame(shifted(scene), traits).front().bytes()));
+        CHECK(std::ranges::equal(loader.get(scene)->splats.front().bytes(),
+                                 makeSceneFrame(shifted(scene), traits).front().bytes()));
     }
     want(loader, from(7));
     CHECK(loader.get(6) == loader.tryGet(6));
@@ -67,7 +68,9 @@ TEST_CASE("a frame that cannot be read is told once, whatever went wrong, and th
     }
     CHECK(loader.get(11) != nullptr);
     CHECK(loader.takeLines(Waits::kBriefly) ==
-          std::vector<std::string>{"the first trouble", "a frame of the moving scene does not fit into memory", "the third trouble"});
+          std::vector<std::string>{"the first trouble",
+                                   "a frame of the moving scene does not fit into memory",
+                                   "the third trouble"});
     CHECK(loader.takeLines(Waits::kBriefly).empty());
     CHECK_THROWS_WITH_AS((void)loader.get(3), "the third trouble", Error);
 }
@@ -82,7 +85,8 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
             return shifted(scene);
         },
         kScenes, traits, {.most_bytes = 5 * bytes, .threads = 2});
-    for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{9}, std::size_t{3}}) {
+    for (const std::size_t first :
+         {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{9}, std::size_t{3}}) {
         want(loader, from(first));
         for (std::size_t i = 0; i < 4; ++i) {
             waitUntil([&] { return loader.tryGet((first + i) % kScenes) != nullptr; });
@@ -91,7 +95,8 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
     }
     CHECK(reads < 24);
     // A limit too small for anything: the next ones are read all the same.
-    SeriesLoader small([](std::size_t scene) { return shifted(scene); }, kScenes, traits, {.most_bytes = 1, .threads = 1});
+    SeriesLoader small([](std::size_t scene) { return shifted(scene); }, kScenes, traits,
+                       {.most_bytes = 1, .threads = 1});
     want(small, from(0));
     for (std::size_t scene = 0; scene < kScenes; ++scene) {
         want(small, from(scene));
@@ -100,7 +105,8 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
     }
 }
 
-TEST_CASE("a frame that is held stays where it is, whatever else is needed, and makes room once nobody holds it") {
+TEST_CASE(
+    "a frame that is held stays where it is, whatever else is needed, and makes room once nobody holds it") {
     const SceneTraits traits = traitsOf(shifted(0));
     const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
     std::atomic<int> reads_of_first = 0;
@@ -120,7 +126,8 @@ TEST_CASE("a frame that is held stays where it is, whatever else is needed, and 
     readFrom(4);
     readFrom(8);
     CHECK(loader.get(0) == held);
-    CHECK(std::ranges::equal(held->splats.front().bytes(), makeSceneFrame(shifted(0), traits).front().bytes()));
+    CHECK(
+        std::ranges::equal(held->splats.front().bytes(), makeSceneFrame(shifted(0), traits).front().bytes()));
     CHECK(reads_of_first == 1);
     held.reset();
     readFrom(4);

@@ -25,7 +25,8 @@ struct Box {
         high = glm::max(high, b);
     }
     [[nodiscard]] std::string json() const {
-        return fmt::format(R"("bound":{{"min":[{},{},{}],"max":[{},{},{}]}})", low.x, low.y, low.z, high.x, high.y, high.z);
+        return fmt::format(R"("bound":{{"min":[{},{},{}],"max":[{},{},{}]}})", low.x, low.y, low.z, high.x,
+                           high.y, high.z);
     }
 };
 
@@ -34,7 +35,9 @@ struct Leaf {
     std::vector<std::string> levels;    // JSON: where its splats are
 };
 
-std::size_t shWidth(const Scene& scene) { return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)); }
+std::size_t shWidth(const Scene& scene) {
+    return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
+}
 
 // Appends to `to` the splat that stands for a whole group.
 void appendGroup(const Scene& scene, std::span<const std::uint32_t> group, Scene& to) {
@@ -48,7 +51,9 @@ void appendGroup(const Scene& scene, std::span<const std::uint32_t> group, Scene
     const std::size_t width = shWidth(scene), at = to.sh.size();
     to.sh.resize(at + width, 0.0f);
     for (const std::uint32_t splat : group) {
-        for (std::size_t i = 0; i < width; ++i) { to.sh[at + i] += scene.sh[splat * width + i] / static_cast<float>(group.size()); }
+        for (std::size_t i = 0; i < width; ++i) {
+            to.sh[at + i] += scene.sh[splat * width + i] / static_cast<float>(group.size());
+        }
     }
 }
 
@@ -71,7 +76,8 @@ public:
         std::string tree = cut(all);
         for (std::uint32_t level = 0; level < settings_.levels; ++level) { writeLevel(level); }
         std::ofstream file(std::filesystem::path(folder_) / "lod-meta.json", std::ios::binary);
-        file << fmt::format(R"({{"version":1,"asset":{{"generator":"binosplat's tests"}},"lodLevels":{},"filenames":["{}"],"tree":{}}})",
+        file << fmt::format(R"({{"version":1,"asset":{{"generator":"binosplat's tests"}},"lodLevels":{},)"
+                            R"("filenames":["{}"],"tree":{}}})",
                             settings_.levels, fmt::join(files_, R"(",")"), withLevels(std::move(tree)));
         check(file.good(), "{}: cannot be written", folder_);
     }
@@ -94,8 +100,9 @@ private:
         const glm::vec3 sides = centres.high - centres.low;
         const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
         const std::size_t half = splats.size() / 2;
-        std::ranges::nth_element(splats, splats.begin() + static_cast<std::ptrdiff_t>(half), {},
-                                 [&](std::uint32_t splat) { return std::pair(scene_.positions[splat][axis], splat); });
+        std::ranges::nth_element(
+            splats, splats.begin() + static_cast<std::ptrdiff_t>(half), {},
+            [&](std::uint32_t splat) { return std::pair(scene_.positions[splat][axis], splat); });
         const std::string first = cut(splats.first(half));
         return fmt::format(R"({{{},"children":[{},{}]}})", box.json(), first, cut(splats.subspan(half)));
     }
@@ -131,9 +138,12 @@ private:
         for (Leaf& leaf : leaves_) {
             const std::size_t count = (leaf.splats.size() + group - 1) / group;
             if (chunk.size() + count > settings_.chunk_splats) { write(); }
-            leaf.levels.push_back(fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", level, files_.size(), chunk.size(), count));
+            leaf.levels.push_back(fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", level,
+                                              files_.size(), chunk.size(), count));
             for (std::size_t i = 0; i < leaf.splats.size(); i += group) {
-                appendGroup(scene_, std::span(leaf.splats).subspan(i, std::min(group, leaf.splats.size() - i)), chunk);
+                appendGroup(scene_,
+                            std::span(leaf.splats).subspan(i, std::min(group, leaf.splats.size() - i)),
+                            chunk);
             }
         }
         write();

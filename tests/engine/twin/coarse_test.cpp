@@ -15,12 +15,16 @@ std::vector<glm::dvec4> samplesOf(const At& at) {
     return samples;
 }
 
-TEST_CASE("pixels that are samples stay as they are, and what is a parabola along either axis is filled as one, up to the border") {
+TEST_CASE(
+    "pixels that are samples stay as they are, and what is a parabola along either axis is filled as one, up "
+    "to the border") {
     const auto parabola = [](const glm::dvec2& place) {
-        return glm::dvec4(0.3 + 0.02 * place.x - 0.001 * place.x * place.x + 0.003 * place.y, 0.1 + 0.002 * place.y * place.y, place);
+        return glm::dvec4(0.3 + 0.02 * place.x - 0.001 * place.x * place.x + 0.003 * place.y,
+                          0.1 + 0.002 * place.y * place.y, place);
     };
     const auto samples = samplesOf(parabola);
-    for (const glm::ivec2 corner : {glm::ivec2(0, 0), glm::ivec2(15, 0), glm::ivec2(0, 15), glm::ivec2(15, 15)}) {
+    for (const glm::ivec2 corner :
+         {glm::ivec2(0, 0), glm::ivec2(15, 0), glm::ivec2(0, 15), glm::ivec2(15, 15)}) {
         const glm::dvec4 sample = samples[static_cast<std::size_t>(corner.y / 15 * 56 + corner.x / 15 * 7)];
         CHECK(glm::distance(reference::fillAt(samples, corner), sample) < 1e-12);
     }
@@ -31,8 +35,9 @@ TEST_CASE("pixels that are samples stay as they are, and what is a parabola alon
 }
 
 TEST_CASE("a ramp loses nothing, and what changes from sample to sample loses the more the more it changes") {
-    CHECK(reference::expectLoss(samplesOf([](const glm::dvec2& place) { return glm::dvec4(0.5 + 0.01 * place.x - 0.02 * place.y); })) <
-          1e-20);
+    CHECK(reference::expectLoss(samplesOf([](const glm::dvec2& place) {
+              return glm::dvec4(0.5 + 0.01 * place.x - 0.02 * place.y);
+          })) < 1e-20);
     const auto lossOf = [](double height) {
         return reference::expectLoss(samplesOf([&](const glm::dvec2& place) {
             return glm::dvec4(glm::dvec3(height * std::cos(glm::radians(180.0) * place.x / kApart)), 1.0);

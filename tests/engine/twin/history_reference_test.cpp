@@ -12,7 +12,11 @@ constexpr double kLeastGrowth = 1.9e-7;  // squared, for a pixel that moved
 
 Picture makePicture(glm::uvec2 size_px) {
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
-    return {size_px, std::vector<glm::dvec4>(pixels), {}, std::vector<double>(pixels), std::vector<double>(pixels)};
+    return {size_px,
+            std::vector<glm::dvec4>(pixels),
+            {},
+            std::vector<double>(pixels),
+            std::vector<double>(pixels)};
 }
 
 // An opaque picture with `colour(x, y)` at the inverse depth `depth(x, y)`; each pixel has a single depth,
@@ -31,7 +35,8 @@ History makeHistory(const Eye& eye, const Colour& colour, const Depth& depth) {
 }
 
 glm::dvec3 waves(double x, double y) {
-    return {0.5 + 0.4 * std::sin(0.3 * x), 0.5 + 0.4 * std::sin(0.2 * y), 0.5 + 0.4 * std::sin(0.2 * (x + y))};
+    return {0.5 + 0.4 * std::sin(0.3 * x), 0.5 + 0.4 * std::sin(0.2 * y),
+            0.5 + 0.4 * std::sin(0.2 * (x + y))};
 }
 
 Eye moved(Eye eye, const glm::dvec3& by) {
@@ -52,7 +57,8 @@ TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency st
         for (int wave = 0; wave <= 200; ++wave) {
             std::complex<double> gain(0.0);
             for (int tap = 0; tap < 6; ++tap) {
-                gain += weights[static_cast<std::size_t>(tap)] * std::polar(1.0, std::numbers::pi * wave / 200.0 * (tap - 2));
+                gain += weights[static_cast<std::size_t>(tap)] *
+                        std::polar(1.0, std::numbers::pi * wave / 200.0 * (tap - 2));
             }
             CHECK(std::abs(gain) <= 1.0 + 1e-12);
         }
@@ -61,9 +67,12 @@ TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency st
     CHECK(lagrangeWeights(1.0)[3] == 1.0);
 }
 
-TEST_CASE("what stands still in front of a head that stands still stays as it is, however often, and has no error") {
+TEST_CASE(
+    "what stands still in front of a head that stands still stays as it is, however often, and has no "
+    "error") {
     const Eye eye = test::makeEye({70, 45});
-    History history = makeHistory(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
+    History history =
+        makeHistory(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
     const History first = history;
     for (int frame = 0; frame < 5; ++frame) {
         WarpedHistory warped = warpHistory(history, eye);
@@ -72,10 +81,12 @@ TEST_CASE("what stands still in front of a head that stands still stays as it is
         history = std::move(warped.picture);
     }
     CHECK(history.rgba == first.rgba);
-    CHECK(std::ranges::equal(history.pixels, first.pixels,
-                             [](const auto& a, const auto& b) { return a->inverse_depth == b->inverse_depth && a->spread == b->spread; }));
+    CHECK(std::ranges::equal(history.pixels, first.pixels, [](const auto& a, const auto& b) {
+        return a->inverse_depth == b->inverse_depth && a->spread == b->spread;
+    }));
     CHECK(std::ranges::all_of(history.tiles, [](const HistoryTile& tile) {
-        return tile.age == 5 && tile.cost == 100 && tile.errors == std::array<double, 4>{} && worthOf(tile) == 0.0;
+        return tile.age == 5 && tile.cost == 100 && tile.errors == std::array<double, 4>{} &&
+               worthOf(tile) == 0.0;
     }));
 }
 
@@ -88,13 +99,16 @@ TEST_CASE("a wave on a wall comes out as it would have been seen, for the least 
         for (std::size_t x = 8; x < 88; ++x) {
             const std::size_t i = y * 96 + x;
             CHECK(depthAt(warped, i) == doctest::Approx(0.5));
-            CHECK(warped.picture.rgba[i].x == doctest::Approx(0.5 + 0.4 * std::sin(0.3 * (static_cast<double>(x) + 0.25))).epsilon(1e-5));
+            CHECK(warped.picture.rgba[i].x ==
+                  doctest::Approx(0.5 + 0.4 * std::sin(0.3 * (static_cast<double>(x) + 0.25))).epsilon(1e-5));
         }
     }
     CHECK(std::ranges::count(warped.unseen, 1) == 0);
     CHECK(std::ranges::count(warped.one_by_one, 1) == 0);
     // The fifth differences of these waves are at most 2e-5.
-    for (const double grown : warped.picture.tiles[1].grown) { CHECK(grown == doctest::Approx(64.0 * kLeastGrowth)); }
+    for (const double grown : warped.picture.tiles[1].grown) {
+        CHECK(grown == doctest::Approx(64.0 * kLeastGrowth));
+    }
     // After a whole pixel, the last column has no history; its pixels count with an amplitude of 1.
     const WarpedHistory on = warpHistory(history, moved(eye, {0.02, 0.0, 0.0}));
     CHECK(std::ranges::count(on.unseen, 1) == 64);
@@ -103,7 +117,8 @@ TEST_CASE("a wave on a wall comes out as it would have been seen, for the least 
 }
 
 TEST_CASE("what is lost between pixels is what alternates there, in whole blocks and pixel by pixel") {
-    const Eye eye = test::makeEye({96, 64}), half = moved(eye, {0.01, 0.0, 0.0}), quarter = moved(eye, {0.005, 0.0, 0.0});
+    const Eye eye = test::makeEye({96, 64}), half = moved(eye, {0.01, 0.0, 0.0}),
+              quarter = moved(eye, {0.005, 0.0, 0.0});
     const auto stripes = [](double x, double) { return glm::dvec3(std::fmod(x, 2.0) == 0.0 ? 0.7 : 0.3); };
     const auto grownOf = [&](const Eye& to, const auto& depth) {
         return warpHistory(makeHistory(eye, stripes, depth), to).picture.tiles[7].grown[0];
@@ -118,21 +133,27 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
     const WarpedHistory apart = warpHistory(makeHistory(eye, stripes, bands), half);
     CHECK(std::ranges::count(apart.one_by_one, 0) == 0);
-    CHECK(apart.picture.tiles[7].grown[0] == doctest::Approx(32 * 3 * 0.2 * 0.2 + 32 * 3 * std::pow(0.19 * 0.2, 2)).epsilon(1e-4));
+    CHECK(apart.picture.tiles[7].grown[0] ==
+          doctest::Approx(32 * 3 * 0.2 * 0.2 + 32 * 3 * std::pow(0.19 * 0.2, 2)).epsilon(1e-4));
     // Not even where everything has one colour: every tile must get its turn.
     const auto grey = [](double, double) { return glm::dvec3(0.5); };
-    CHECK(warpHistory(makeHistory(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
+    CHECK(warpHistory(makeHistory(eye, grey, bands), half).picture.tiles[7].grown[0] ==
+          doctest::Approx(64 * kLeastGrowth));
 }
 
-TEST_CASE("a tile's gradient is its picture's, in whole blocks and pixel by pixel, and where it is low less error is within a bound") {
+TEST_CASE(
+    "a tile's gradient is its picture's, in whole blocks and pixel by pixel, and where it is low less error "
+    "is within a bound") {
     const Eye eye = test::makeEye({96, 64});
     const auto ramp = [](double x, double y) { return glm::dvec3(0.004 * x, 0.003 * y, 0.5); };
     const auto wall = [](double, double) { return 0.5; };
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
     const double expected = 256 * (0.004 * 0.004 + 0.003 * 0.003);
     const Eye there = moved(eye, {0.01, 0.0, 0.0});
-    CHECK(warpHistory(makeHistory(eye, ramp, wall), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
-    CHECK(warpHistory(makeHistory(eye, ramp, bands), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
+    CHECK(warpHistory(makeHistory(eye, ramp, wall), there).picture.tiles[7].squared_gradient ==
+          doctest::Approx(expected));
+    CHECK(warpHistory(makeHistory(eye, ramp, bands), there).picture.tiles[7].squared_gradient ==
+          doctest::Approx(expected));
 
     HistoryTile tile;
     tile.errors[2] = 0.03;
@@ -157,7 +178,8 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
         for (std::size_t x = 0; x < 78; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(1.0)); }
         for (std::size_t x = 78; x < 80; ++x) { CHECK(warped.unseen[row + x] == 1); }
         for (std::size_t x = 80; x < 160; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(0.1)); }
-        CHECK(std::count(warped.unseen.begin() + static_cast<int>(row), warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
+        CHECK(std::count(warped.unseen.begin() + static_cast<int>(row),
+                         warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
     }
     // What a silhouette uncovers is expected to resemble what lies beside it; in a quarter of the tile, 16
     // such pixels.
@@ -165,7 +187,9 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
     CHECK(warped.picture.tiles[14].grown[1] < 1.0);
     // And to the left: the near wall covers two pixels that both walls would claim.
     const WarpedHistory covered = warpHistory(history, moved(eye, {-0.02, 0.0, 0.0}));
-    for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
+    for (std::size_t x = 78; x < 160; ++x) {
+        CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1));
+    }
 }
 
 TEST_CASE("nothing comes from where the history was hidden, and what is hidden now is background") {

@@ -23,25 +23,32 @@ inline Scene makeScene(const std::vector<Splat>& splats) {
         scene.scales.push_back(splat.scale);
         scene.opacities.push_back(splat.opacity);
         // colour = 0.5 + sqrt(1/pi)/2 f_dc
-        for (int channel = 0; channel < 3; ++channel) { scene.sh.push_back((splat.colour[channel] - 0.5f) / 0.28209479177387814f); }
+        for (int channel = 0; channel < 3; ++channel) {
+            scene.sh.push_back((splat.colour[channel] - 0.5f) / 0.28209479177387814f);
+        }
     }
     return scene;
 }
 
 // At the origin, along z, with a focal length of 100 px and the axis through the centre of the middle pixel
 // of an odd size.
-inline Eye makeEye(glm::uvec2 size_px) { return {Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px}; }
+inline Eye makeEye(glm::uvec2 size_px) {
+    return {Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px};
+}
 
 // Random splats around an eye at the origin: near and far, large and thin, behind it, through the near plane,
 // outside the picture.
 inline Scene makeCloud(int count, unsigned seed) {
     std::mt19937 random(seed);
-    const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(drawUnit(random)); };
+    const auto draw = [&](float low, float high) {
+        return low + (high - low) * static_cast<float>(drawUnit(random));
+    };
     std::vector<Splat> splats;
     for (int i = 0; i < count; ++i) {
         Splat splat;
         splat.position = {draw(-2.0f, 2.0f), draw(-2.0f, 2.0f), draw(-0.5f, 4.0f)};
-        splat.rotation = glm::normalize(glm::quat(draw(-1.0f, 1.0f), draw(-1.0f, 1.0f), draw(-1.0f, 1.0f), draw(-1.0f, 1.0f)));
+        splat.rotation = glm::normalize(
+            glm::quat(draw(-1.0f, 1.0f), draw(-1.0f, 1.0f), draw(-1.0f, 1.0f), draw(-1.0f, 1.0f)));
         splat.scale = {std::exp(draw(-6.0f, 0.5f)), std::exp(draw(-6.0f, 0.5f))};
         splat.opacity = draw(0.0f, 1.0f);
         splat.colour = {draw(0.0f, 1.0f), draw(0.0f, 1.0f), draw(0.0f, 1.0f)};

@@ -26,19 +26,27 @@ Picture render(const std::vector<Splat>& splats, const Settings& settings = {}, 
 // With hits in each pixel's own order, or in that of a window.
 Picture renderByPixel(const Scene& scene, std::size_t window) {
     const Eye eye = makeEye(kSize);
-    const auto order = reference::sortDepth(reference::compact(scene, reference::cull(scene, {&eye, 1}, {}), eye));
+    const auto order =
+        reference::sortDepth(reference::compact(scene, reference::cull(scene, {&eye, 1}, {}), eye));
     const auto splats = reference::project(scene, order, eye, {});
     auto pairs = reference::bin(splats, kSize, {});
     reference::sortTiles(pairs);
-    return reference::rasterizeByPixel(scene, order, splats, pairs, reference::tileRanges(pairs, kSize), eye, {}, window);
+    return reference::rasterizeByPixel(scene, order, splats, pairs, reference::tileRanges(pairs, kSize), eye,
+                                       {}, window);
 }
 
-glm::dvec4 rgbaAt(const Picture& picture, std::uint32_t x, std::uint32_t y) { return picture.rgba[std::size_t{y} * picture.size_px.x + x]; }
-double depthAt(const Picture& picture, std::uint32_t x, std::uint32_t y) { return picture.depth[std::size_t{y} * picture.size_px.x + x]; }
+glm::dvec4 rgbaAt(const Picture& picture, std::uint32_t x, std::uint32_t y) {
+    return picture.rgba[std::size_t{y} * picture.size_px.x + x];
+}
+double depthAt(const Picture& picture, std::uint32_t x, std::uint32_t y) {
+    return picture.depth[std::size_t{y} * picture.size_px.x + x];
+}
 
 doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-6); }
 
-TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by the runs of its rows or by bin, and bin adds no tile") {
+TEST_CASE(
+    "no pixel at which a splat is met is left out by cull, by its box, by the runs of its rows or by bin, "
+    "and bin adds no tile") {
     Scene scene = makeCloud(500, 6);
     for (std::size_t i = 0; i < 100; ++i) {  // large ones around the eye
         scene.positions[i] *= 0.3f;
@@ -46,7 +54,8 @@ TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by 
     }
     std::vector<std::uint32_t> all(scene.size());
     std::iota(all.begin(), all.end(), 0u);
-    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(16, 16), glm::uvec2(90, 70)}) {
+    for (const glm::uvec2 size_px :
+         {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(16, 16), glm::uvec2(90, 70)}) {
         for (const Eye& eye : {makeEye(size_px), makeOddEye(size_px)}) {
             const auto splats = reference::project(scene, all, eye, {});
             const auto visible = reference::cull(scene, {&eye, 1}, {});
@@ -62,9 +71,11 @@ TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by 
                         reference::Hit hit;
                         if (!reference::meet(plane, {x + 0.5, y + 0.5}, hit)) { continue; }
                         ++met;
-                        tiles.insert(static_cast<std::uint32_t>(y / 16) * ((size_px.x + 15) / 16) + static_cast<std::uint32_t>(x / 16));
+                        tiles.insert(static_cast<std::uint32_t>(y / 16) * ((size_px.x + 15) / 16) +
+                                     static_cast<std::uint32_t>(x / 16));
                         const bool in_box = x >= box.x && x < box.z && y >= box.y && y < box.w;
-                        const bool in_run = std::ranges::any_of(runs, [&](auto run) { return x >= run.begin && x < run.end; });
+                        const bool in_run = std::ranges::any_of(
+                            runs, [&](auto run) { return x >= run.begin && x < run.end; });
                         left_out += visible[i] != 0 && in_box && in_run ? 0 : 1;
                     }
                 }
@@ -92,7 +103,8 @@ TEST_CASE("the customary box of a disc that faces the eye is a square of 3 sigma
 TEST_CASE("a disc through the near plane keeps its front part and shows no mirror image") {
     // A floor at y = 1 below the eye: the ray with slope Y = (row - 50) / 100 meets it at z = 1 / Y, and the
     // middle column at v = z / 3. Its centre is nearer than the near plane, so there is no low-pass.
-    const std::vector<Splat> floor{{.position = {0.0f, 1.0f, 0.0f}, .rotation = kFloor, .scale = glm::vec2(3.0f)}};
+    const std::vector<Splat> floor{
+        {.position = {0.0f, 1.0f, 0.0f}, .rotation = kFloor, .scale = glm::vec2(3.0f)}};
     const Picture picture = render(floor);
     for (const std::uint32_t row : {65u, 80u, 100u}) {
         const double z = 100.0 / (row - 50.0);
@@ -114,10 +126,13 @@ TEST_CASE("a disc through the near plane keeps its front part and shows no mirro
 
 TEST_CASE("of a disc seen edge-on, smaller than a pixel or without a scale only the low-pass is left") {
     // rho2 = 2 r^2, so alpha = o exp(-r^2), up to r = sqrt(10.636 / 2) = 2.3 px; the depth is the centre's.
-    for (const Splat& splat : {Splat{.rotation = kEdgeOn}, Splat{.rotation = glm::angleAxis(1e-7f, glm::vec3(1.0f, 0.0f, 0.0f)) * kEdgeOn},
-                               Splat{.scale = glm::vec2(1e-6f)}, Splat{.scale = glm::vec2(0.0f)}}) {
+    for (const Splat& splat :
+         {Splat{.rotation = kEdgeOn},
+          Splat{.rotation = glm::angleAxis(1e-7f, glm::vec3(1.0f, 0.0f, 0.0f)) * kEdgeOn},
+          Splat{.scale = glm::vec2(1e-6f)}, Splat{.scale = glm::vec2(0.0f)}}) {
         const Picture picture = render({splat});
-        CHECK(std::ranges::all_of(picture.rgba, [](const glm::dvec4& p) { return std::isfinite(p.x + p.y + p.z + p.w); }));
+        CHECK(std::ranges::all_of(picture.rgba,
+                                  [](const glm::dvec4& p) { return std::isfinite(p.x + p.y + p.z + p.w); }));
         CHECK(std::ranges::all_of(picture.depth, [](double depth) { return std::isfinite(depth); }));
         CHECK(rgbaAt(picture, 50, 50).w == near(0.8));
         CHECK(rgbaAt(picture, 51, 50).w == near(0.8 * std::exp(-1.0)));
@@ -143,14 +158,20 @@ TEST_CASE("two discs that cross are blended in the order of each pixel's own hit
     // Planes z = 2 + x and z = 2.1 - x meet at x = 0.05, z = 2.05. Sorted as whole discs, the red one comes
     // first everywhere, but to the right of the crossing the green one is nearer. On the ray x = X z they are
     // at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre: a distance of sqrt(2) x along the disc.
-    const Splat red{.position = {0.0f, 0.0f, 2.0f}, .rotation = kReceding, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}};
-    const Splat green{
-        .position = {0.0f, 0.0f, 2.1f}, .rotation = glm::conjugate(kReceding), .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}};
+    const Splat red{.position = {0.0f, 0.0f, 2.0f},
+                    .rotation = kReceding,
+                    .scale = glm::vec2(1.0f),
+                    .colour = {1.0f, 0.0f, 0.0f}};
+    const Splat green{.position = {0.0f, 0.0f, 2.1f},
+                      .rotation = glm::conjugate(kReceding),
+                      .scale = glm::vec2(1.0f),
+                      .colour = {0.0f, 1.0f, 0.0f}};
     const auto alphaAt = [](double x) { return static_cast<double>(0.8f) * std::exp(-x * x); };
     for (const std::size_t window : {std::size_t{1}, std::size_t{2}, SIZE_MAX}) {
         const Picture picture = renderByPixel(makeScene({red, green}), window);
         for (const std::uint32_t column : {10u, 51u, 54u, 90u}) {
-            const double slope = (column - 50.0) / 100.0, red_z = 2.0 / (1.0 - slope), green_z = static_cast<double>(2.1f) / (1.0 + slope);
+            const double slope = (column - 50.0) / 100.0, red_z = 2.0 / (1.0 - slope),
+                         green_z = static_cast<double>(2.1f) / (1.0 + slope);
             const double red_alpha = alphaAt(slope * red_z), green_alpha = alphaAt(slope * green_z);
             const bool red_first = window == 1 || red_z < green_z;
             CHECK(red_first == (window == 1 || column < 53));
@@ -164,9 +185,11 @@ TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
     // Long along (1, 0, 1) and (1, 0, -1), through (0, 0, 2) and (0, 0, 2.1): needles in the planes of the
     // discs above, which cross in the same way.
     const auto alongX = [](float z, const glm::quat& rotation, const glm::vec3& colour) {
-        return Splat{.position = {0.0f, 0.0f, z}, .rotation = rotation, .scale = {1.0f, 0.02f}, .colour = colour};
+        return Splat{
+            .position = {0.0f, 0.0f, z}, .rotation = rotation, .scale = {1.0f, 0.02f}, .colour = colour};
     };
-    Scene scene = makeScene({alongX(2.0f, kReceding, {1.0f, 0.0f, 0.0f}), alongX(2.1f, glm::conjugate(kReceding), {0.0f, 1.0f, 0.0f})});
+    Scene scene = makeScene({alongX(2.0f, kReceding, {1.0f, 0.0f, 0.0f}),
+                             alongX(2.1f, glm::conjugate(kReceding), {0.0f, 1.0f, 0.0f})});
     scene.thicknesses.assign(2, 0.02f);
     const Picture by_splat = renderByPixel(scene, 1), by_pixel = renderByPixel(scene, SIZE_MAX);
     for (const std::uint32_t column : {40u, 50u, 65u}) {
@@ -180,8 +203,11 @@ TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
 TEST_CASE("blending stops before transmittance falls under 1e-4") {
     // T: 1, 0.01, then 2e-4. The third layer would leave 2e-6 and closes the pixel, so the fourth is not
     // blended, although it would fit.
-    const auto layer = [](float z, float opacity) { return Splat{.position = {0.0f, 0.0f, z}, .opacity = opacity}; };
-    const Picture picture = render({layer(2.0f, 1.0f), layer(3.0f, 0.98f), layer(4.0f, 1.0f), layer(5.0f, 0.1f)});
+    const auto layer = [](float z, float opacity) {
+        return Splat{.position = {0.0f, 0.0f, z}, .opacity = opacity};
+    };
+    const Picture picture =
+        render({layer(2.0f, 1.0f), layer(3.0f, 0.98f), layer(4.0f, 1.0f), layer(5.0f, 0.1f)});
     CHECK(rgbaAt(picture, 50, 50).w == near(1.0 - 0.01 * (1.0 - static_cast<double>(0.98f))));
 }
 
@@ -209,7 +235,8 @@ TEST_CASE("spherical harmonics have the signs scenes are trained with") {
         scene.sh.assign(48, 0.0f);
         scene.sh[3 * coefficient] = 0.25f;
         const std::uint32_t order = 0;
-        CHECK((reference::project(scene, {&order, 1}, makeEye({301, 301}), {})[0].colour.x - 0.5) / 0.25 == near(value));
+        CHECK((reference::project(scene, {&order, 1}, makeEye({301, 301}), {})[0].colour.x - 0.5) / 0.25 ==
+              near(value));
     }
 }
 

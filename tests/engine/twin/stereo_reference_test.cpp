@@ -16,19 +16,23 @@ EyePair parallelEyes(glm::uvec2 size_px) {
 // Opaque and black, all at one inverse depth.
 Picture makePicture(glm::uvec2 size_px, double inverse_depth) {
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
-    return {size_px, std::vector(pixels, glm::dvec4(0.0, 0.0, 0.0, 1.0)), std::vector(pixels, 1.0 / inverse_depth),
-            std::vector(pixels, inverse_depth), std::vector(pixels, inverse_depth * inverse_depth)};
+    return {size_px, std::vector(pixels, glm::dvec4(0.0, 0.0, 0.0, 1.0)),
+            std::vector(pixels, 1.0 / inverse_depth), std::vector(pixels, inverse_depth),
+            std::vector(pixels, inverse_depth * inverse_depth)};
 }
 // A ramp in green, of 1/100 per pixel.
 Picture makeRamp(glm::uvec2 size_px) {
     Picture picture = makePicture(size_px, 0.2);
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = 0.01 * static_cast<double>(i % size_px.x); }
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        picture.rgba[i].y = 0.01 * static_cast<double>(i % size_px.x);
+    }
     return picture;
 }
 // Lets a pixel's depths differ by as much as `code` says.
 void spread(Picture& picture, std::size_t pixel, std::uint32_t code) {
     const double w = picture.inverse_depth[pixel] / picture.rgba[pixel].w;
-    picture.inverse_depth_squared[pixel] = picture.rgba[pixel].w * w * w * (1.0 + spreadOf(code) * spreadOf(code));
+    picture.inverse_depth_squared[pixel] =
+        picture.rgba[pixel].w * w * w * (1.0 + spreadOf(code) * spreadOf(code));
 }
 
 std::string letters(std::span<const TileKind> kinds) {
@@ -48,8 +52,8 @@ std::vector<TileRange> rangesOf(const std::vector<std::uint32_t>& pairs) {
 }
 
 // A tile of the strip whose pairs `weigh` sees: nothing moves if everything is infinitely far.
-Weighed weighStrip(const std::vector<std::uint32_t>& pairs, std::uint32_t move_cost, std::vector<std::uint8_t> hidden = {},
-                   double budget = 0.0) {
+Weighed weighStrip(const std::vector<std::uint32_t>& pairs, std::uint32_t move_cost,
+                   std::vector<std::uint8_t> hidden = {}, double budget = 0.0) {
     const glm::uvec2 size_px(16 * pairs.size(), 16);
     Picture far = makePicture(size_px, 1.0);
     for (glm::dvec4& value : far.rgba) { value.w = 0.0; }
@@ -71,7 +75,9 @@ TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, 
     for (const double none : {0.0, -1.0, 1e-5, std::nan("")}) { CHECK(spreadCode(none) == 0); }
 }
 
-TEST_CASE("nothing is moved where that saves no more than half of moving all tiles that are shown, and the budget") {
+TEST_CASE(
+    "nothing is moved where that saves no more than half of moving all tiles that are shown, and the "
+    "budget") {
     // Eight tiles that cost 40 each to move: 160 must be saved.
     CHECK(letters(weighStrip({200, 1, 1, 1, 1, 1, 1, 1}, 40).kinds) == "CCCCCCCC");
     CHECK_FALSE(weighStrip({200, 1, 1, 1, 1, 1, 1, 1}, 40).moves);
@@ -91,7 +97,9 @@ TEST_CASE("nothing is moved where that saves no more than half of moving all til
     CHECK_FALSE(weighStrip({500, 500}, 0, {1, 1}).moves);
 }
 
-TEST_CASE("expected errors of blended depths: half the spread in pixels times the gradient, squared, on every other row for two") {
+TEST_CASE(
+    "expected errors of blended depths: half the spread in pixels times the gradient, squared, on every "
+    "other row for two") {
     // 2 px of disparity at inverse depth 0.2, with a spread of 1/4 of it.
     const glm::uvec2 size_px(48, 16);
     Picture picture = makeRamp(size_px);
@@ -116,10 +124,13 @@ TEST_CASE("expected errors of blended depths: half the spread in pixels times th
     CHECK(without[2] == 0.0);
     // Four pixels are the maximum.
     for (Resolved& r : spreadless) { r.spread = 31; }
-    CHECK(expectErrors(spreadless, arrivals, picture, kinds, eyes, settings)[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
+    CHECK(expectErrors(spreadless, arrivals, picture, kinds, eyes, settings)[1] ==
+          doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
 }
 
-TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of it") {
+TEST_CASE(
+    "expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of "
+    "it") {
     // 10 px of disparity at inverse depth 1, so a step of 0.1 is one pixel.
     const glm::uvec2 size_px(48, 16);
     const Picture picture = makeRamp(size_px);
@@ -127,7 +138,9 @@ TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, ti
     const auto arrivals = reproject(picture, eyes, {});
     const auto resolved = resolve(arrivals, eyes, {});
     const std::vector<TileKind> kinds(3, TileKind::kNone);
-    const auto errorsOf = [&](const std::vector<Arrival>& beside) { return expectErrors(resolved, beside, picture, kinds, eyes, {}); };
+    const auto errorsOf = [&](const std::vector<Arrival>& beside) {
+        return expectErrors(resolved, beside, picture, kinds, eyes, {});
+    };
     CHECK(errorsOf(arrivals)[1] < 1e-24);
     // One column of another depth next to each pair of columns: the class of a pixel itself stays.
     auto stepped = arrivals;
@@ -141,14 +154,19 @@ TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, ti
     CHECK(errorsOf(stepped)[1] < 1e-24);
 }
 
-TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is lost halfway between two, and not on one") {
+TEST_CASE(
+    "expected errors of sampling: what alternates from pixel to pixel is lost halfway between two, and not "
+    "on one") {
     const glm::uvec2 size_px(48, 16);
     const auto errorAt = [&](double inverse_depth, bool across) {
         Picture picture = makePicture(size_px, inverse_depth);
-        for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = (across ? i : i / 48) % 2 == 0 ? 0.55 : 0.45; }
+        for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+            picture.rgba[i].y = (across ? i : i / 48) % 2 == 0 ? 0.55 : 0.45;
+        }
         const EyePair eyes = parallelEyes(size_px);
         const auto arrivals = reproject(picture, eyes, {});
-        return expectErrors(resolve(arrivals, eyes, {}), arrivals, picture, std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
+        return expectErrors(resolve(arrivals, eyes, {}), arrivals, picture,
+                            std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
     };
     // 10 px of disparity at inverse depth 1.
     CHECK(errorAt(0.25, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0));
@@ -158,22 +176,28 @@ TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is l
     CHECK(errorAt(0.25, false) == 0.0);
 }
 
-TEST_CASE("an eye that resolves as much as the picture shows sees all of an error, farther from where it looks less and less") {
+TEST_CASE(
+    "an eye that resolves as much as the picture shows sees all of an error, farther from where it looks "
+    "less and less") {
     // Pixels of 1/1000: cycles of 2/1000 rad, or 0.1146 degrees, which the eye resolves up to (0.1146 - 1/48)
     // / 0.022 = 4.26 degrees.
     const Eye eye{Pose{}, {1000.0, 1000.0, 8.0, 8.0}, {1024, 16}};
     const auto shareAt = [&](double tangent, const reference::Gaze& gaze) {
-        return reference::findSeenShares(eye, gaze).at(static_cast<std::size_t>(tangent * 1000.0 / 16.0 + 0.5));
+        return reference::findSeenShares(eye, gaze).at(
+            static_cast<std::size_t>(tangent * 1000.0 / 16.0 + 0.5));
     };
     const reference::Gaze ahead{{0.0, 0.0, 2.0}, 0.0};
     CHECK(shareAt(0.0, ahead) == 1.0);
     CHECK(shareAt(0.064, ahead) == 1.0);  // 3.7 degrees
     CHECK(shareAt(0.08, ahead) < 1.0);    // 4.6 degrees
-    const auto law = [](double degrees) { return std::pow(glm::degrees(0.002) / (1.0 / 48.0 + 0.022 * degrees), 2.0); };
+    const auto law = [](double degrees) {
+        return std::pow(glm::degrees(0.002) / (1.0 / 48.0 + 0.022 * degrees), 2.0);
+    };
     CHECK(shareAt(0.352, ahead) == doctest::Approx(law(glm::degrees(std::atan(0.352)))));
     CHECK(law(19.4) == doctest::Approx(0.0654).epsilon(0.01));
     // It may also look up to ten degrees to the side.
-    CHECK(shareAt(0.352, {{0.0, 0.0, 1.0}, glm::radians(10.0)}) == doctest::Approx(law(glm::degrees(std::atan(0.352)) - 10.0)));
+    CHECK(shareAt(0.352, {{0.0, 0.0, 1.0}, glm::radians(10.0)}) ==
+          doctest::Approx(law(glm::degrees(std::atan(0.352)) - 10.0)));
     // It looks there; straight ahead is then just as far away.
     CHECK(shareAt(0.352, {{0.352, 0.0, 1.0}, 0.0}) == 1.0);
     CHECK(shareAt(0.0, {{0.352, 0.0, 1.0}, 0.0}) == doctest::Approx(shareAt(0.352, ahead)));

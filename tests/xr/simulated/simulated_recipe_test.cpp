@@ -23,7 +23,8 @@ Run shell(const std::string& command) {
 }
 
 bool haveTools() {
-    return binosplat::test::isInstalled("hello_xr", "libopenxr-utils") && binosplat::test::isInstalled("python3", "python3");
+    return binosplat::test::isInstalled("hello_xr", "libopenxr-utils") &&
+           binosplat::test::isInstalled("python3", "python3");
 }
 
 std::string pageText() { return textIn(BINOSPLAT_SOURCE_DIR "/docs/test_your_openxr_program.md"); }
@@ -44,14 +45,17 @@ const fs::path& installedManifest() {
         fs::create_directories(kWork);
         fs::remove_all(kWork / "source");
         fs::remove_all(kWork / "installed");
-        fs::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/xr/simulated", kWork / "source", fs::copy_options::recursive);
+        fs::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/xr/simulated", kWork / "source",
+                 fs::copy_options::recursive);
         // Builds each target from one file that reads the headers once: half the work.
-        const std::string cache = std::system("command -v ccache > /dev/null") == 0 ? " -DCMAKE_CXX_COMPILER_LAUNCHER=ccache" : "";
+        const std::string cache =
+            std::system("command -v ccache > /dev/null") == 0 ? " -DCMAKE_CXX_COMPILER_LAUNCHER=ccache" : "";
         const std::string work = kWork.string();
-        const Run run = shell(
-            "cmake -S " + work + "/source -B " + work +
-            "/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-g0 -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0" +
-            cache + " && cmake --build " + work + "/build && cmake --install " + work + "/build --prefix " + work + "/installed");
+        const Run run = shell("cmake -S " + work + "/source -B " + work +
+                              "/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-g0 "
+                              "-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0" +
+                              cache + " && cmake --build " + work + "/build && cmake --install " + work +
+                              "/build --prefix " + work + "/installed");
         CHECK_MESSAGE(run.exit_code == 0, run.output);
         return kWork / "installed/share/openxr/1/simulated_openxr_runtime.json";
     }();
@@ -64,28 +68,31 @@ Run runHello(const std::string& name, const std::string& script) {
     fs::remove_all(kWork / name);
     const std::string keys = (kWork / "keys").string();
     return shell("rm -f " + keys + " && mkfifo " + keys +
-                 " && env -u SIMULATED_OPENXR_SCRIPT -u SIMULATED_OPENXR_OUT XR_RUNTIME_JSON=" + installedManifest().string() +
-                 " SIMULATED_OPENXR_SCRIPT=" + (kWork / (name + ".script")).string() + " SIMULATED_OPENXR_OUT=" + (kWork / name).string() +
+                 " && env -u SIMULATED_OPENXR_SCRIPT -u SIMULATED_OPENXR_OUT XR_RUNTIME_JSON=" +
+                 installedManifest().string() + " SIMULATED_OPENXR_SCRIPT=" +
+                 (kWork / (name + ".script")).string() + " SIMULATED_OPENXR_OUT=" + (kWork / name).string() +
                  " SIMULATED_OPENXR_EXPLAIN=1 timeout 60 hello_xr -g Vulkan2 0<>" + keys);
 }
 
 Run compareRuns(const std::string& expected, const std::string& actual, const std::string& options = "") {
-    return shell((kWork / "installed/bin/compare_frame_logs").string() + " " + (kWork / expected).string() + " " +
-                 (kWork / actual).string() + " " + options);
+    return shell((kWork / "installed/bin/compare_frame_logs").string() + " " + (kWork / expected).string() +
+                 " " + (kWork / actual).string() + " " + options);
 }
 
 bool contains(const Run& run, const char* part) { return run.output.find(part) != std::string::npos; }
 
-TEST_CASE("the folder builds alone and installs a library that its manifest finds, where the page says" * nightly()) {
+TEST_CASE("the folder builds alone and installs a library that its manifest finds, where the page says" *
+          nightly()) {
     REQUIRE(fs::exists(installedManifest()));
-    for (const char* file :
-         {"lib/libsimulated_openxr_runtime.so", "share/openxr/1/simulated_openxr_runtime.json", "bin/compare_frame_logs"}) {
+    for (const char* file : {"lib/libsimulated_openxr_runtime.so",
+                             "share/openxr/1/simulated_openxr_runtime.json", "bin/compare_frame_logs"}) {
         CHECK_MESSAGE(pageText().find(std::string(1, '`') + file + '`') != std::string::npos, file);
         CHECK_MESSAGE(fs::exists(kWork / "installed" / file), file);
     }
     const auto manifest = nlohmann::json::parse(std::ifstream(installedManifest()));
     CHECK(manifest["runtime"]["name"] == "Simulated OpenXR runtime");
-    const fs::path library = installedManifest().parent_path() / manifest["runtime"]["library_path"].get<std::string>();
+    const fs::path library =
+        installedManifest().parent_path() / manifest["runtime"]["library_path"].get<std::string>();
     CHECK(fs::exists(library));
     CHECK(fs::exists(kWork / "installed/share/doc/simulated_openxr_runtime/LICENSE"));
     // Apart from what every Debian has, it needs only libpng.
@@ -106,12 +113,16 @@ TEST_CASE("a foreign program runs by the page's script, and is seen" * nightly()
     std::vector<nlohmann::json> frames;
     for (std::string line; std::getline(log, line);) { frames.push_back(nlohmann::json::parse(line)); }
     REQUIRE(frames.size() > 100);
-    CHECK(these(frames.at(90)["session_state"], frames.at(90)["layers"].at(0)["type"]) == these("FOCUSED", "projection"));
+    CHECK(these(frames.at(90)["session_state"], frames.at(90)["layers"].at(0)["type"]) ==
+          these("FOCUSED", "projection"));
     CHECK(frames.at(90)["head"]["position"][0].get<double>() == doctest::Approx(0.5));
     for (const nlohmann::json& frame : frames) {
-        if (frame.contains("picture")) { CHECK_MESSAGE(fs::exists(kWork / "first" / frame["picture"]), frame["picture"]); }
+        if (frame.contains("picture")) {
+            CHECK_MESSAGE(fs::exists(kWork / "first" / frame["picture"]), frame["picture"]);
+        }
     }
-    CHECK(these(frames.at(30)["picture"], frames.at(31).contains("picture")) == these("frame_000030.png", false));
+    CHECK(these(frames.at(30)["picture"], frames.at(31).contains("picture")) ==
+          these("frame_000030.png", false));
 }
 
 TEST_CASE("the page's recipes for CTest and pytest do as they stand there" * nightly()) {
@@ -121,21 +132,27 @@ TEST_CASE("the page's recipes for CTest and pytest do as they stand there" * nig
     fs::remove_all(kWork / "home");
     fs::create_directories(kWork / "home/project/expected");
     fs::create_directory_symlink(kWork / "installed", kWork / "home/simulated-openxr");
-    std::ofstream(kWork / "installed/bin/my_program") << "#!/bin/sh\nexec hello_xr -g Vulkan2 0<>" << (kWork / "keys").string() << "\n";
+    std::ofstream(kWork / "installed/bin/my_program")
+        << "#!/bin/sh\nexec hello_xr -g Vulkan2 0<>" << (kWork / "keys").string() << "\n";
     fs::permissions(kWork / "installed/bin/my_program", fs::perms::owner_all);
     const std::string script = blockWith("press right trigger 0.5 0.7");
     REQUIRE(runHello("expected", script).exit_code == 0);
     fs::copy(kWork / "expected", kWork / "home/project/expected/walk", fs::copy_options::recursive);
     std::ofstream(kWork / "home/project/walk.script") << script;
-    std::ofstream(kWork / "home/project/CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\nenable_testing()\n"
-                                                         << blockWith("add_test(NAME walk COMMAND my_program)");
-    std::ofstream(kWork / "home/test_it.py") << blockWith("def test_the_program_renders_when_it_is_in_focus")
-                                             << "\nimport tempfile\nwith tempfile.TemporaryDirectory() as folder:\n"
-                                                "    test_the_program_renders_when_it_is_in_focus(pathlib.Path(folder))\n";
+    std::ofstream(kWork / "home/project/CMakeLists.txt")
+        << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\nenable_testing()\n"
+        << blockWith("add_test(NAME walk COMMAND my_program)");
+    std::ofstream(kWork / "home/test_it.py")
+        << blockWith("def test_the_program_renders_when_it_is_in_focus")
+        << "\nimport tempfile\nwith tempfile.TemporaryDirectory() as folder:\n"
+           "    test_the_program_renders_when_it_is_in_focus(pathlib.Path(folder))\n";
     const std::string home = (kWork / "home").string();
     const std::string environment = "export HOME=" + home + " PATH=" + (kWork / "installed/bin").string() +
-                                    ":$PATH; unset SIMULATED_OPENXR_SCRIPT SIMULATED_OPENXR_OUT; cd " + home + "; ";
-    const Run tests = shell(environment + "cmake -S project -B build && ctest --test-dir build --output-on-failure --no-tests=error");
+                                    ":$PATH; unset SIMULATED_OPENXR_SCRIPT SIMULATED_OPENXR_OUT; cd " + home +
+                                    "; ";
+    const Run tests =
+        shell(environment +
+              "cmake -S project -B build && ctest --test-dir build --output-on-failure --no-tests=error");
     CHECK_MESSAGE(tests.exit_code == 0, tests.output);
     CHECK(contains(tests, "100% tests passed, 0 tests failed out of 2"));
     const Run python = shell(environment + "python3 test_it.py");
@@ -158,24 +175,28 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
         int exit_code;
         std::string said;  // or a part of it
     };
-    const std::string expected = "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n{\"refused\": \"XR_ERROR_TIME_INVALID\"}\n";
-    const std::string other = "{\"frame\": 0, \"x\": [1, 2.6], \"events\": []}\n{\"refused\": \"XR_ERROR_POSE_INVALID\"}\n";
+    const std::string expected =
+        "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n{\"refused\": \"XR_ERROR_TIME_INVALID\"}\n";
+    const std::string other =
+        "{\"frame\": 0, \"x\": [1, 2.6], \"events\": []}\n{\"refused\": \"XR_ERROR_POSE_INVALID\"}\n";
     const std::string forgiving = "--ignore events --ignore x --ignore refused --pictures ";
     write("a", expected, 100);
-    for (const Case& one : {Case{other, "", 1,
-                                 "frame 0: x[1] is 2.6, expected 2.5\nframe 0: events has 0 entries, expected 1\n"
-                                 "line 2: refused is \"XR_ERROR_POSE_INVALID\", expected \"XR_ERROR_TIME_INVALID\"\n"},
-                            {other, "--tolerance 0.2 --ignore events --ignore refused", 0, ""},
-                            {other, "--ignore events --ignore x --ignore refused", 0, ""},
-                            {other, forgiving + "10", 0, ""},
-                            {other, forgiving + "9 --share 0.01", 0, ""},
-                            {other, forgiving + "9", 1, "frame_000000.png is off by more than 9 in 1 of 100 pixels (PSNR 52.9 dB)"},
-                            {expected + "{\"frame\": 1}\n", "", 1, "3 lines, expected 2"},
-                            {"nonsense\n", "", 2, "b/frames.jsonl:1: not a line of JSON"},
-                            {"{}\n7\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
-                            {"{}\n[{}]\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
-                            {"{}\nnull\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
-                            {"{}\n\"x\"\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"}}) {
+    for (const Case& one :
+         {Case{other, "", 1,
+               "frame 0: x[1] is 2.6, expected 2.5\nframe 0: events has 0 entries, expected 1\n"
+               "line 2: refused is \"XR_ERROR_POSE_INVALID\", expected \"XR_ERROR_TIME_INVALID\"\n"},
+          {other, "--tolerance 0.2 --ignore events --ignore refused", 0, ""},
+          {other, "--ignore events --ignore x --ignore refused", 0, ""},
+          {other, forgiving + "10", 0, ""},
+          {other, forgiving + "9 --share 0.01", 0, ""},
+          {other, forgiving + "9", 1,
+           "frame_000000.png is off by more than 9 in 1 of 100 pixels (PSNR 52.9 dB)"},
+          {expected + "{\"frame\": 1}\n", "", 1, "3 lines, expected 2"},
+          {"nonsense\n", "", 2, "b/frames.jsonl:1: not a line of JSON"},
+          {"{}\n7\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
+          {"{}\n[{}]\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
+          {"{}\nnull\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
+          {"{}\n\"x\"\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"}}) {
         INFO("one.actual ", one.actual, ", one.options ", one.options);
         write("b", one.actual, 110);
         const Run run = compareRuns("a", "b", one.options);
@@ -191,8 +212,8 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
     CHECK(compareRuns("a", "d", "--pictures 0").exit_code == 0);
     const fs::path picture = kWork / "d/frame_000000.png";
     const std::uintmax_t behind_pixels = 16;
-    for (const std::uintmax_t size :
-         {std::uintmax_t{0}, std::uintmax_t{7}, std::uintmax_t{20}, std::uintmax_t{33}, fs::file_size(picture) - behind_pixels - 1}) {
+    for (const std::uintmax_t size : {std::uintmax_t{0}, std::uintmax_t{7}, std::uintmax_t{20},
+                                      std::uintmax_t{33}, fs::file_size(picture) - behind_pixels - 1}) {
         write("d", "{}\n", 100);
         fs::resize_file(picture, size);
         const Run run = compareRuns("a", "d", "--pictures 0");

@@ -54,7 +54,8 @@ std::mutex& getRuntimeLock() {
 void sayTotals() {
     for (const auto& [line, said] : getSaidLines()) {
         if (said.times > said.told) {
-            std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times in all)\n", line.c_str(), said.times);
+            std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times in all)\n", line.c_str(),
+                         said.times);
         }
     }
     getSaidLines().clear();
@@ -72,15 +73,20 @@ void explain(const char* function, const Refusal& refusal) {
     // A failure of the runtime itself is always reported: no application can know what to do about it. The
     // loader asks for every function that it has heard of, even without an instance after one was refused;
     // that is not the application's mistake.
-    const bool is_loaders = std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
-    if (!is_loaders) { queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason); }
+    const bool is_loaders =
+        std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
+    if (!is_loaders) {
+        queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function,
+                     refusal.reason);
+    }
     const bool is_wanted = settingOf("EXPLAIN").is_there && !is_loaders;
     if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) { return; }
     say(std::string(function) + ": " + nameOf(refusal.result) + ": " + refusal.reason);
 }
 
 void explainFailure(const char* function, const char* what) {
-    queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, nameOf(XR_ERROR_RUNTIME_FAILURE), function, what);
+    queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, nameOf(XR_ERROR_RUNTIME_FAILURE), function,
+                 what);
     say(std::string(function) + ": " + what);
 }
 

@@ -30,17 +30,21 @@ Pose poseOf(const ControllerState& controller, const BoundSource& source) {
 }
 
 bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
-    return active.set == action.set && (active.subaction_path == XR_NULL_PATH || active.subaction_path == source.user_path);
+    return active.set == action.set &&
+           (active.subaction_path == XR_NULL_PATH || active.subaction_path == source.user_path);
 }
 
-bool isActivated(const std::vector<ActiveSet>& active, const AttachedAction& action, const BoundSource& source) {
-    return std::any_of(active.begin(), active.end(), [&](const ActiveSet& set) { return isActivatedBy(set, action, source); });
+bool isActivated(const std::vector<ActiveSet>& active, const AttachedAction& action,
+                 const BoundSource& source) {
+    return std::any_of(active.begin(), active.end(),
+                       [&](const ActiveSet& set) { return isActivatedBy(set, action, source); });
 }
 
 using Priorities = std::map<std::pair<std::size_t, std::string>, std::uint32_t>;
 
 // The highest priority that any active action has on each source; lower ones count as unbound.
-Priorities findHighestPriorities(const std::vector<AttachedAction>& actions, const std::vector<ActiveSet>& active) {
+Priorities findHighestPriorities(const std::vector<AttachedAction>& actions,
+                                 const std::vector<ActiveSet>& active) {
     Priorities highest;
     for (const AttachedAction& action : actions) {
         for (const BoundSource& source : action.sources) {
@@ -52,22 +56,27 @@ Priorities findHighestPriorities(const std::vector<AttachedAction>& actions, con
     return highest;
 }
 
-ActionReading readAction(const AttachedAction& action, XrPath subaction_path, const State& state, const std::vector<ActiveSet>& active,
-                         const Priorities& highest) {
+ActionReading readAction(const AttachedAction& action, XrPath subaction_path, const State& state,
+                         const std::vector<ActiveSet>& active, const Priorities& highest) {
     ActionReading reading;
     const std::optional<std::size_t> followed_before = action.readings.at(subaction_path).followed;
     bool keeps_followed = false;
     for (std::size_t i = 0; i < action.sources.size(); ++i) {
         const BoundSource& source = action.sources[i];
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) { continue; }
-        if (!isActivated(active, action, source) || action.priority < highest.at({source.device, source.source})) { continue; }
+        if (!isActivated(active, action, source) ||
+            action.priority < highest.at({source.device, source.source})) {
+            continue;
+        }
         reading.is_activated = true;
         keeps_followed = keeps_followed || followed_before == i;
         const ControllerState& controller = state.device(source.device);
         if (!controller.tracked) { continue; }
         reading.is_active = true;
         if (!reading.followed) { reading.followed = i; }
-        if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
+        if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) {
+            continue;
+        }
         // Among several sources the strongest counts; for booleans that is "or".
         const glm::dvec2 value = valueOf(controller, source, action.type);
         if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) { reading.value = value; }
@@ -93,25 +102,32 @@ Pose gripFromPose(std::string_view component, std::size_t device) {
 }
 
 AttachedAction* Attachment::find(std::uint64_t action) {
-    const auto found = std::find_if(actions.begin(), actions.end(), [&](const auto& attached) { return attached.number == action; });
+    const auto found = std::find_if(actions.begin(), actions.end(),
+                                    [&](const auto& attached) { return attached.number == action; });
     return found == actions.end() ? nullptr : &*found;
 }
 
 bool Attachment::isSuggested(const Instance& instance, const Profile& profile) const {
     const XrPath path = instance.paths.findPath(profile.path);
-    return std::any_of(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
+    return std::any_of(suggestions.begin(), suggestions.end(),
+                       [&](const auto& one) { return one.profile == path; });
 }
 
 bool Attachment::chooseProfiles(Instance& instance, const Automation& automation, double time_s) {
     const Simulation& simulation = *instance.simulation;
     const std::string later = simulation.script.later_profiles.at(time_s);
-    const std::string now_wanted = later.empty() ? simulation.favourite_profile : std::string(findHandProfile(later)->path);
+    const std::string now_wanted =
+        later.empty() ? simulation.favourite_profile : std::string(findHandProfile(later)->path);
     if (now_wanted != hands_wanted) {
         hands = nullptr;
         std::vector<Profile> candidates(listProfiles().begin(), listProfiles().end());
-        std::stable_partition(candidates.begin(), candidates.end(), [&](const Profile& one) { return one.path == now_wanted; });
+        std::stable_partition(candidates.begin(), candidates.end(),
+                              [&](const Profile& one) { return one.path == now_wanted; });
         for (const Profile& candidate : candidates) {
-            if (!candidate.user_paths.front().starts_with("/user/hand/") || !isSuggested(instance, candidate)) { continue; }
+            if (!candidate.user_paths.front().starts_with("/user/hand/") ||
+                !isSuggested(instance, candidate)) {
+                continue;
+            }
             if (!hands_wanted) { checkInputs(simulation.script, candidate); }
             hands = findProfile(candidate.path);
             break;
@@ -143,7 +159,9 @@ void Attachment::bindSources(const Instance& instance) {
             AttachedAction* const action = find(binding.action);
             if (action == nullptr) { continue; }
             auto source = bindSource(instance, *profile, binding.path, action->type);
-            if (source && profiles[source->device] == profile) { action->sources.push_back(std::move(*source)); }
+            if (source && profiles[source->device] == profile) {
+                action->sources.push_back(std::move(*source));
+            }
         }
     }
 }
@@ -164,7 +182,8 @@ void Attachment::read(const State& state, const std::vector<ActiveSet>& active, 
 
 AttachedAction& getAttached(Session& session, XrAction action) {
     const Action& described = getAction(session.instance, action);
-    AttachedAction* const attached = session.attachment ? session.attachment->find(described.number) : nullptr;
+    AttachedAction* const attached =
+        session.attachment ? session.attachment->find(described.number) : nullptr;
     require(attached != nullptr, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the set of the action ", described.name,
             " is not attached to this session");
     return *attached;
@@ -173,7 +192,8 @@ AttachedAction& getAttached(Session& session, XrAction action) {
 namespace {
 
 // An action and what it read; null if it is not attached, or the session does not run.
-std::pair<const AttachedAction*, const ActionReading*> readingOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
+std::pair<const AttachedAction*, const ActionReading*> readingOf(const Session& session, std::uint64_t action,
+                                                                 XrPath subaction_path) {
     if (!session.attachment || !session.is_running) { return {}; }
     for (const AttachedAction& attached : session.attachment->actions) {
         if (attached.number != action) { continue; }
@@ -192,7 +212,8 @@ const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath
 
 }  // namespace
 
-std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path,
+                                    const State& state) {
     const BoundSource* const source = sourceOf(session, action, subaction_path);
     if (source == nullptr || !state.device(source->device).tracked) { return std::nullopt; }
     return poseOf(state.device(source->device), *source);

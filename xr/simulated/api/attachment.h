@@ -76,7 +76,8 @@ Pose gripFromPose(std::string_view component, std::size_t device);
 AttachedAction& getAttached(Session& session, XrAction action);
 
 // Where a pose action's source is; none while it is inactive.
-std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path,
+                                    const State& state);
 // True if the last sync activated the action with a source: otherwise its spaces cannot be located, not even
 // in one another.
 bool isLocatable(const Session& session, std::uint64_t action, XrPath subaction_path);

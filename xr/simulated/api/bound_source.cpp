@@ -9,8 +9,8 @@ namespace {
 
 // The component that a suggested path means for an action of this type, by the specification's rules; none:
 // it stays unbound.
-std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path, XrActionType type,
-                                   const Enabled& enabled) {
+std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path,
+                                   XrActionType type, const Enabled& enabled) {
     const auto firstOf = [&](std::initializer_list<const char*> components) -> std::optional<std::string> {
         for (const char* component : components) {
             const std::string longer = std::string(path) + component;
@@ -42,7 +42,8 @@ std::optional<std::string> resolve(const Profile& profile, std::string_view user
 
 }  // namespace
 
-std::optional<BoundSource> bindSource(const Instance& instance, const Profile& profile, XrPath path, XrActionType type) {
+std::optional<BoundSource> bindSource(const Instance& instance, const Profile& profile, XrPath path,
+                                      XrActionType type) {
     const std::string& text = instance.paths.textOf(path);
     const std::string_view user_path = userPathOf(text);
     const std::optional<std::size_t> device = deviceOf(user_path);
@@ -52,7 +53,8 @@ std::optional<BoundSource> bindSource(const Instance& instance, const Profile& p
     if (!component) { return std::nullopt; }
     const std::size_t start = component->find('/', 1) + 1;
     const std::size_t end = component->find('/', start);
-    return BoundSource{path, instance.paths.findPath(user_path), *device, component->substr(start, end - start), component->substr(start)};
+    return BoundSource{path, instance.paths.findPath(user_path), *device,
+                       component->substr(start, end - start), component->substr(start)};
 }
 
 }  // namespace simulated

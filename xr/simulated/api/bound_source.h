@@ -24,6 +24,7 @@ struct BoundSource {
 };
 
 // None if the profile has nothing there for this type of action: it stays unbound.
-std::optional<BoundSource> bindSource(const Instance& instance, const Profile& profile, XrPath path, XrActionType type);
+std::optional<BoundSource> bindSource(const Instance& instance, const Profile& profile, XrPath path,
+                                      XrActionType type);
 
 }  // namespace simulated

@@ -5,7 +5,8 @@
 
 namespace simulated {
 
-Clock::Clock(bool is_real, XrDuration period, double irregularity) : is_real_(is_real), period_(period), irregularity_(irregularity) {}
+Clock::Clock(bool is_real, XrDuration period, double irregularity)
+    : is_real_(is_real), period_(period), irregularity_(irregularity) {}
 
 XrDuration Clock::delayOf(std::int64_t of_frame) const {
     if (is_real_ || irregularity_ == 0 || of_frame <= 0) { return 0; }
@@ -20,7 +21,9 @@ Clock::Frame Clock::nextFrame(std::int64_t skipped) {
     if (!birth_) { birth_ = std::chrono::steady_clock::now(); }
     frame_ += is_real_ ? 1 : 1 + skipped;
     // A late frame takes the next free slot, as on a display.
-    if (is_real_ && (frame_ > 0 || is_early_)) { frame_ = std::max<std::int64_t>(frame_, (now() - origin_) / period_ + 1); }
+    if (is_real_ && (frame_ > 0 || is_early_)) {
+        frame_ = std::max<std::int64_t>(frame_, (now() - origin_) / period_ + 1);
+    }
     const std::chrono::nanoseconds wake(shown() - period_ - kStart);
     return {shown(), *birth_ + std::max(wake, std::chrono::nanoseconds(0))};
 }
@@ -32,7 +35,9 @@ void Clock::pass() {
 
 XrTime Clock::now() const {
     if (!is_real_ || !birth_) { return shown(); }
-    return kStart + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - *birth_).count();
+    return kStart +
+           std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - *birth_)
+               .count();
 }
 
 void Clock::setPeriod(XrDuration period) {

@@ -18,7 +18,8 @@ struct Entry {
 const Entry kEntries[] = {
 #define SIMULATED_ENTRY(name) {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), nullptr},
 #define SIMULATED_1_1_ENTRY(name) {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), nullptr, true},
-#define SIMULATED_EXTENSION_ENTRY(name, extension) {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), extension},
+#define SIMULATED_EXTENSION_ENTRY(name, extension) \
+    {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), extension},
     SIMULATED_CORE_FUNCTIONS(SIMULATED_ENTRY) SIMULATED_CORE_1_1_FUNCTIONS(SIMULATED_1_1_ENTRY)
         SIMULATED_EXTENSION_FUNCTIONS(SIMULATED_EXTENSION_ENTRY)
 #undef SIMULATED_ENTRY
@@ -28,7 +29,8 @@ const Entry kEntries[] = {
 
 // Functions that exist without an instance.
 bool needsNoInstance(const char* name) {
-    for (const char* candidate : {"xrEnumerateInstanceExtensionProperties", "xrEnumerateApiLayerProperties", "xrCreateInstance"}) {
+    for (const char* candidate :
+         {"xrEnumerateInstanceExtensionProperties", "xrEnumerateApiLayerProperties", "xrCreateInstance"}) {
         if (std::strcmp(name, candidate) == 0) { return true; }
     }
     return false;
@@ -54,7 +56,8 @@ XrResult xrGetInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoid
             output = entry.function;
             return XR_SUCCESS;
         }
-        refuse(XR_ERROR_FUNCTION_UNSUPPORTED, name, ": no such function, or its extension or version was not asked for");
+        refuse(XR_ERROR_FUNCTION_UNSUPPORTED, name,
+               ": no such function, or its extension or version was not asked for");
     });
 }
 

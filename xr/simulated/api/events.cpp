@@ -15,10 +15,10 @@ constexpr std::size_t kMostEvents = 64;
 
 // Events of sessions have the session right after type and next.
 XrSession sessionOf(const XrEventDataBuffer& event) {
-    constexpr XrStructureType kOfSessions[] = {XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED,
-                                               XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR,
-                                               XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
-                                               XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT};
+    constexpr XrStructureType kOfSessions[] = {
+        XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED,
+        XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
+        XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT};
     if (std::ranges::find(kOfSessions, event.type) == std::end(kOfSessions)) { return XR_NULL_HANDLE; }
     return reinterpret_cast<const XrEventDataInteractionProfileChanged&>(event).session;
 }

@@ -30,24 +30,29 @@ Session& getRunningSession(XrSession session) {
 }
 
 void checkBlendMode(XrEnvironmentBlendMode mode, const Script& script) {
-    const bool is_known = mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
+    const bool is_known =
+        mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
     require(is_known, XR_ERROR_VALIDATION_FAILURE, mode, " is no blend mode");
-    const bool is_offered = std::ranges::any_of(
-        script.blend_modes, [&](Script::BlendMode offered) { return static_cast<int>(offered) + 1 == static_cast<int>(mode); });
-    require(is_offered, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "the headset does not offer ", wordOf(mode));
+    const bool is_offered = std::ranges::any_of(script.blend_modes, [&](Script::BlendMode offered) {
+        return static_cast<int>(offered) + 1 == static_cast<int>(mode);
+    });
+    require(is_offered, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "the headset does not offer ",
+            wordOf(mode));
 }
 
 // A begun frame that is refused is logged, once for each reason; the program may try to end it again.
 const XrFrameEndInfo& checkFrame(Session& session, const XrFrameEndInfo* frame_end_info) {
     try {
         const XrFrameEndInfo& info = checkStruct(frame_end_info, XR_TYPE_FRAME_END_INFO);
-        require(session.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame was not called for this frame");
+        require(session.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID,
+                "xrBeginFrame was not called for this frame");
         checkTime(info.displayTime);
         checkBlendMode(info.environmentBlendMode, session.instance.simulation->script);
         checkLayers(session, info);
         return info;
     } catch (const Refusal& refusal) {
-        if (session.frames.begun && std::exchange(session.frames.refused_for, refusal.reason) != refusal.reason) {
+        if (session.frames.begun &&
+            std::exchange(session.frames.refused_for, refusal.reason) != refusal.reason) {
             logBetween(session, &refusal);
         }
         throw;
@@ -71,7 +76,8 @@ void loadGpu(Session& session, const XrFrameEndInfo& info) {
     }
     const double period_ms = 1e-6 * static_cast<double>(simulation.clock.period());
     session.frames.gpu_ms = load.ms(period_ms, megapixels);
-    session.frames.missed = std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(*session.frames.gpu_ms / period_ms - 1e-9)) - 1, 0);
+    session.frames.missed = std::max<std::int64_t>(
+        static_cast<std::int64_t>(std::ceil(*session.frames.gpu_ms / period_ms - 1e-9)) - 1, 0);
 }
 
 }  // namespace
@@ -100,13 +106,15 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         owner.meetEvents(frame.display_time);
         owner.announceMasks(state);
         owner.announcePresence(state);
-        const bool is_visible = owner.state == XR_SESSION_STATE_VISIBLE || owner.state == XR_SESSION_STATE_FOCUSED;
+        const bool is_visible =
+            owner.state == XR_SESSION_STATE_VISIBLE || owner.state == XR_SESSION_STATE_FOCUSED;
         owner.frames.waited = frame.display_time;
         owner.frames.are_used = true;
         owner.frames.should_render = is_visible && state.should_render && !owner.isHeadless();
         output.predictedDisplayTime = frame.display_time;
         output.predictedDisplayPeriod =
-            simulation.clock.period() * (simulation.script.stretches_period && !simulation.clock.isReal() ? 1 + missed : 1);
+            simulation.clock.period() *
+            (simulation.script.stretches_period && !simulation.clock.isReal() ? 1 + missed : 1);
         output.shouldRender = owner.frames.should_render;
         if (!simulation.clock.isReal()) { frame.wake_time = {}; }
         return successOf(owner, XR_SUCCESS);
@@ -121,14 +129,17 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
     return answerFor<Session>(__func__, session, [&](Session& owner) {
         checkRunning(owner);
         checkOptional(frameBeginInfo, XR_TYPE_FRAME_BEGIN_INFO);
-        require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
+        require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID,
+                "xrWaitFrame was not called for this frame");
         const bool is_discarding = owner.frames.begun.has_value();
         if (is_discarding) { owner.passFrame(*owner.frames.begun); }
         owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
         owner.frames.last_begun = owner.frames.begun;
         owner.frames.moves_state = true;
         owner.frames.refused_for.clear();
-        if (owner.instance.simulation->script.changes_state_at_begin) { owner.passFrame(*owner.frames.begun); }
+        if (owner.instance.simulation->script.changes_state_at_begin) {
+            owner.passFrame(*owner.frames.begun);
+        }
         wakeFrameWaiters();
         return is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS;
     });

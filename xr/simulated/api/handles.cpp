@@ -30,7 +30,8 @@ Object* findObject(std::uint64_t number) {
 }
 
 void adoptObject(Object& parent, std::unique_ptr<Object> child) {
-    require(parent.children.size() < kMostChildren, XR_ERROR_LIMIT_REACHED, "one parent has at most 4096 objects");
+    require(parent.children.size() < kMostChildren, XR_ERROR_LIMIT_REACHED,
+            "one parent has at most 4096 objects");
     child->number = table().next_number++;
     child->parent = &parent;
     table().objects.emplace(child->number, child.get());
@@ -41,7 +42,8 @@ void destroyObject(Object& object) {
     while (!object.children.empty()) { destroyObject(*object.children.back()); }
     table().objects.erase(object.number);
     auto& siblings = object.parent->children;
-    siblings.erase(std::find_if(siblings.begin(), siblings.end(), [&](const auto& sibling) { return sibling.get() == &object; }));
+    siblings.erase(std::find_if(siblings.begin(), siblings.end(),
+                                [&](const auto& sibling) { return sibling.get() == &object; }));
 }
 
 }  // namespace simulated

@@ -77,7 +77,8 @@ T* find(typename T::Handle handle) {
 template <class Handle>
 [[noreturn]] void refuseHandle(Handle handle, const char* why) {
     char digits[16];
-    const std::string_view number(digits, std::to_chars(digits, digits + sizeof digits, numberOf(handle), 16).ptr - digits);
+    const std::string_view number(
+        digits, std::to_chars(digits, digits + sizeof digits, numberOf(handle), 16).ptr - digits);
     refuse(XR_ERROR_HANDLE_INVALID, "0x", number, " is not an ", typeOf(handle), why);
 }
 

@@ -29,19 +29,24 @@ Script loadScriptBeforeInstance() {
 
 void checkApplication(const XrApplicationInfo& application) {
     const auto isEnded = [](const auto& name) { return strnlen(name, sizeof name) < sizeof name; };
-    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID, "a name is not terminated");
-    require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
+    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID,
+            "a name is not terminated");
+    require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID,
+            "the application has no name");
     textOf(application.engineName);
     const XrVersion version = application.apiVersion;
-    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1, XR_ERROR_API_VERSION_UNSUPPORTED, "the API version is ",
-            XR_VERSION_MAJOR(version), ".", XR_VERSION_MINOR(version), ", this runtime implements OpenXR 1.0 and 1.1");
+    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1,
+            XR_ERROR_API_VERSION_UNSUPPORTED, "the API version is ", XR_VERSION_MAJOR(version), ".",
+            XR_VERSION_MINOR(version), ", this runtime implements OpenXR 1.0 and 1.1");
 }
 
 [[noreturn]] void refuseExtension(const char* name) {
     // Programs with another graphics API could have no session here: they are told at once what is supported.
-    for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
+    for (const char* const graphics :
+         {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
         if (std::strcmp(name, graphics) != 0) { continue; }
-        refuse(XR_ERROR_EXTENSION_NOT_PRESENT, name, ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
+        refuse(XR_ERROR_EXTENSION_NOT_PRESENT, name,
+               ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
     }
     throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
 }
@@ -49,7 +54,8 @@ void checkApplication(const XrApplicationInfo& application) {
 std::set<std::string, std::less<>> checkExtensions(const XrInstanceCreateInfo& info, const Script& script) {
     const std::vector<Extension> offered = listOfferedExtensions(script);
     std::set<std::string, std::less<>> names;
-    for (const char* const name : checkArray(info.enabledExtensionNames, info.enabledExtensionCount, "extension names")) {
+    for (const char* const name :
+         checkArray(info.enabledExtensionNames, info.enabledExtensionCount, "extension names")) {
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");
         const auto isIt = [&](const Extension& one) { return std::strcmp(one.name, name) == 0; };
         if (std::ranges::none_of(offered, isIt)) { refuseExtension(name); }
@@ -62,28 +68,33 @@ template <std::size_t size, class Value>
 void spell(char* buffer, const char* unknown_prefix, Value value) {
     require(buffer != nullptr, XR_ERROR_VALIDATION_FAILURE, "a buffer is missing");
     const char* const name = nameOf(value);
-    copyText(*reinterpret_cast<char(*)[size]>(buffer), name != nullptr ? name : unknown_prefix + std::to_string(static_cast<int>(value)));
+    copyText(*reinterpret_cast<char(*)[size]>(buffer),
+             name != nullptr ? name : unknown_prefix + std::to_string(static_cast<int>(value)));
 }
 
 }  // namespace
 
 void checkNotLost(const Instance& instance) {
-    require(!instance.lost_from || instance.simulation->clock.now() < *instance.lost_from, XR_ERROR_INSTANCE_LOST,
-            "the script lost the instance");
+    require(!instance.lost_from || instance.simulation->clock.now() < *instance.lost_from,
+            XR_ERROR_INSTANCE_LOST, "the script lost the instance");
 }
 
-XrResult xrEnumerateApiLayerProperties(uint32_t propertyCapacityInput, uint32_t* propertyCountOutput, XrApiLayerProperties* properties) {
+XrResult xrEnumerateApiLayerProperties(uint32_t propertyCapacityInput, uint32_t* propertyCountOutput,
+                                       XrApiLayerProperties* properties) {
     // The loader knows the layers; a runtime has none.
     return answer(__func__, [&] { fillArray(propertyCapacityInput, propertyCountOutput, properties, {}); });
 }
 
-XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t propertyCapacityInput, uint32_t* propertyCountOutput,
+XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t propertyCapacityInput,
+                                                uint32_t* propertyCountOutput,
                                                 XrExtensionProperties* properties) {
     return answer(__func__, [&] {
         require(layerName == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, layerName, ": a runtime has no layers");
         const std::vector<Extension> offered = listOfferedExtensions(loadScriptBeforeInstance());
         if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) { return; }
-        for (std::size_t i = 0; i < offered.size(); ++i) { checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES); }
+        for (std::size_t i = 0; i < offered.size(); ++i) {
+            checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES);
+        }
         for (std::size_t i = 0; i < offered.size(); ++i) {
             copyText(properties[i].extensionName, offered[i].name);
             properties[i].extensionVersion = offered[i].version;
@@ -96,7 +107,8 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
     return answer(__func__, [&] {
         const XrInstanceCreateInfo& info = checkStruct(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
         XrInstance& output = checkOutput(instance);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags,
+                ", no flags are known");
         // API layers are the loader's business: it passes their names through, and a runtime ignores them.
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
@@ -126,13 +138,16 @@ XrResult xrGetInstanceProperties(XrInstance instance, XrInstanceProperties* inst
 
 XrResult xrResultToString(XrInstance instance, XrResult value, char buffer[XR_MAX_RESULT_STRING_SIZE]) {
     return answerFor<Instance>(__func__, instance, [&](const Instance&) {
-        spell<XR_MAX_RESULT_STRING_SIZE>(buffer, XR_SUCCEEDED(value) ? "XR_UNKNOWN_SUCCESS_" : "XR_UNKNOWN_FAILURE_", value);
+        spell<XR_MAX_RESULT_STRING_SIZE>(
+            buffer, XR_SUCCEEDED(value) ? "XR_UNKNOWN_SUCCESS_" : "XR_UNKNOWN_FAILURE_", value);
     });
 }
 
-XrResult xrStructureTypeToString(XrInstance instance, XrStructureType value, char buffer[XR_MAX_STRUCTURE_NAME_SIZE]) {
-    return answerFor<Instance>(__func__, instance,
-                               [&](const Instance&) { spell<XR_MAX_STRUCTURE_NAME_SIZE>(buffer, "XR_UNKNOWN_STRUCTURE_TYPE_", value); });
+XrResult xrStructureTypeToString(XrInstance instance, XrStructureType value,
+                                 char buffer[XR_MAX_STRUCTURE_NAME_SIZE]) {
+    return answerFor<Instance>(__func__, instance, [&](const Instance&) {
+        spell<XR_MAX_STRUCTURE_NAME_SIZE>(buffer, "XR_UNKNOWN_STRUCTURE_TYPE_", value);
+    });
 }
 
 }  // namespace simulated

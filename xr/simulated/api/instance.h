@@ -45,10 +45,13 @@ struct Instance : Object, Enabled {
     [[nodiscard]] bool has(const Profile& profile) const { return meets(profile.depends); }
     // /user/eyes_ext exists only with the extension.
     [[nodiscard]] bool hasUserPath(std::string_view path) const {
-        return isUserPath(path) && (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
+        return isUserPath(path) &&
+               (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
     }
     // Features in the core since 1.1, and in 1.0 with an extension.
-    [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
+    [[nodiscard]] bool has1_1Or(const char* extension) const {
+        return is_1_1 || extensions.contains(extension);
+    }
     // The system's for an instance that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE
     // if there is none.
     [[nodiscard]] PFN_vkGetInstanceProcAddr vulkanLoaderOf(VkInstance vulkan_instance) const;

@@ -31,7 +31,9 @@ struct Pending {
     std::vector<std::pair<XrDebugUtilsObjectNameInfoEXT, std::optional<std::string>>> objects;
 };
 
-std::optional<std::string> copyOf(const char* text) { return text == nullptr ? std::nullopt : std::optional<std::string>(text); }
+std::optional<std::string> copyOf(const char* text) {
+    return text == nullptr ? std::nullopt : std::optional<std::string>(text);
+}
 const char* pointerTo(const std::optional<std::string>& text) { return text ? text->c_str() : nullptr; }
 
 std::vector<Pending>& getPending() {
@@ -45,7 +47,10 @@ const XrDebugUtilsMessengerCreateInfoEXT*& getCreationMessenger() {
 }
 
 void queueFor(const Pending& message, const XrDebugUtilsMessengerCreateInfoEXT& messenger) {
-    if ((messenger.messageSeverities & message.severity) == 0 || (messenger.messageTypes & message.types) == 0) { return; }
+    if ((messenger.messageSeverities & message.severity) == 0 ||
+        (messenger.messageTypes & message.types) == 0) {
+        return;
+    }
     getPending().push_back(message);
     getPending().back().callback = messenger.userCallback;
     getPending().back().user_data = messenger.userData;
@@ -55,7 +60,9 @@ void queueForAll(const Pending& message) {
     if (const auto* const creation = getCreationMessenger()) { queueFor(message, *creation); }
     for (const auto& instance : root().children) {
         for (const auto& child : instance->children) {
-            if (const auto* const messenger = dynamic_cast<const Messenger*>(child.get())) { queueFor(message, messenger->info); }
+            if (const auto* const messenger = dynamic_cast<const Messenger*>(child.get())) {
+                queueFor(message, messenger->info);
+            }
         }
     }
 }
@@ -85,9 +92,10 @@ std::string checkLabel(const XrDebugUtilsLabelEXT* label) {
 
 bool wantsMessages(const XrInstanceCreateInfo& info) {
     if (info.enabledExtensionNames == nullptr) { return false; }
-    return std::ranges::any_of(std::span(info.enabledExtensionNames, info.enabledExtensionCount), [](const char* name) {
-        return name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
-    });
+    return std::ranges::any_of(
+        std::span(info.enabledExtensionNames, info.enabledExtensionCount), [](const char* name) {
+            return name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
+        });
 }
 
 }  // namespace
@@ -105,16 +113,28 @@ CreationMessenger::CreationMessenger(const XrInstanceCreateInfo* info) {
 
 CreationMessenger::~CreationMessenger() { getCreationMessenger() = nullptr; }
 
-void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function, const std::string& text) {
-    const Instance* const instance = root().children.empty() ? nullptr : dynamic_cast<const Instance*>(root().children.front().get());
-    queueForAll({nullptr, nullptr, XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, type, id, function, text, labelsOf(instance), {}});
+void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function,
+                  const std::string& text) {
+    const Instance* const instance =
+        root().children.empty() ? nullptr : dynamic_cast<const Instance*>(root().children.front().get());
+    queueForAll({nullptr,
+                 nullptr,
+                 XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+                 type,
+                 id,
+                 function,
+                 text,
+                 labelsOf(instance),
+                 {}});
 }
 
 void deliverMessages() {
     // A callback may queue more messages.
     for (const Pending& message : std::exchange(getPending(), {})) {
         std::vector<XrDebugUtilsLabelEXT> labels;
-        for (const std::string& label : message.labels) { labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()}); }
+        for (const std::string& label : message.labels) {
+            labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()});
+        }
         std::vector<XrDebugUtilsObjectNameInfoEXT> objects;
         for (const auto& [object, name] : message.objects) {
             objects.push_back(object);
@@ -133,7 +153,8 @@ void deliverMessages() {
     }
 }
 
-XrResult xrCreateDebugUtilsMessengerEXT(XrInstance instance, const XrDebugUtilsMessengerCreateInfoEXT* createInfo,
+XrResult xrCreateDebugUtilsMessengerEXT(XrInstance instance,
+                                        const XrDebugUtilsMessengerCreateInfoEXT* createInfo,
                                         XrDebugUtilsMessengerEXT* messenger) {
     return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrDebugUtilsMessengerCreateInfoEXT& info = checkMessenger(createInfo);
@@ -148,7 +169,8 @@ XrResult xrDestroyDebugUtilsMessengerEXT(XrDebugUtilsMessengerEXT messenger) {
     return answer(__func__, [&] { destroyObject(get<Messenger>(messenger)); });
 }
 
-XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSeverityFlagsEXT messageSeverity,
+XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance,
+                                      XrDebugUtilsMessageSeverityFlagsEXT messageSeverity,
                                       XrDebugUtilsMessageTypeFlagsEXT messageTypes,
                                       const XrDebugUtilsMessengerCallbackDataEXT* callbackData) {
     return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
@@ -156,19 +178,32 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
         checkFlags(messageSeverity, kSeverities, "messageSeverity");
         checkFlags(messageTypes, kTypes, "messageTypes");
         require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
-        require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
-        require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of labels is missing");
+        require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE,
+                "an array of objects is missing");
+        require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE,
+                "an array of labels is missing");
         // The application's message is unchanged, except for the names of objects; missing parts are filled
         // in.
-        Pending message{nullptr, nullptr, messageSeverity, messageTypes, copyOf(data.messageId), copyOf(data.functionName), data.message,
-                        {},      {}};
-        for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) { message.labels.push_back(checkLabel(&data.sessionLabels[i])); }
+        Pending message{nullptr,
+                        nullptr,
+                        messageSeverity,
+                        messageTypes,
+                        copyOf(data.messageId),
+                        copyOf(data.functionName),
+                        data.message,
+                        {},
+                        {}};
+        for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) {
+            message.labels.push_back(checkLabel(&data.sessionLabels[i]));
+        }
         if (message.labels.empty()) { message.labels = labelsOf(&owner); }
         for (std::uint32_t i = 0; i < data.objectCount; ++i) {
             const auto& object = data.objects[i];
             // The registered name wins, as in the loader's own messengers.
             const auto registered = owner.object_names.find({object.objectType, object.objectHandle});
-            message.objects.emplace_back(object, registered == owner.object_names.end() ? copyOf(object.objectName) : registered->second);
+            message.objects.emplace_back(object, registered == owner.object_names.end()
+                                                     ? copyOf(object.objectName)
+                                                     : registered->second);
         }
         queueForAll(message);
     });
@@ -177,7 +212,8 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
 XrResult xrSetDebugUtilsObjectNameEXT(XrInstance instance, const XrDebugUtilsObjectNameInfoEXT* nameInfo) {
     return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const auto& info = checkStruct(nameInfo, XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
-        require(info.objectType != XR_OBJECT_TYPE_UNKNOWN && info.objectHandle != 0, XR_ERROR_VALIDATION_FAILURE, "no object to name");
+        require(info.objectType != XR_OBJECT_TYPE_UNKNOWN && info.objectHandle != 0,
+                XR_ERROR_VALIDATION_FAILURE, "no object to name");
         const std::pair key(info.objectType, info.objectHandle);
         if (info.objectName == nullptr || *info.objectName == '\0') {
             owner.object_names.erase(key);
@@ -202,7 +238,8 @@ XrResult xrSessionEndDebugUtilsLabelRegionEXT(XrSession session) {
 }
 
 XrResult xrSessionInsertDebugUtilsLabelEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
-    return answerFor<Session>(__func__, session, [&](Session& owner) { owner.labels.inserted = checkLabel(labelInfo); });
+    return answerFor<Session>(__func__, session,
+                              [&](Session& owner) { owner.labels.inserted = checkLabel(labelInfo); });
 }
 
 }  // namespace simulated

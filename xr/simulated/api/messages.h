@@ -38,7 +38,8 @@ public:
     CreationMessenger& operator=(const CreationMessenger&) = delete;
 };
 
-void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function, const std::string& text);
+void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function,
+                  const std::string& text);
 // Call it without the runtime's lock.
 void deliverMessages();
 

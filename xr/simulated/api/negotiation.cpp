@@ -35,9 +35,11 @@ struct NegotiateRuntimeRequest {
 };
 
 bool isUnderstood(const NegotiateLoaderInfo* info) {
-    return info != nullptr && info->structure_type == InterfaceStructure::LoaderInfo && info->structure_version == kStructureVersion &&
-           info->structure_size == sizeof *info && info->least_interface_version <= kInterfaceVersion &&
-           info->most_interface_version >= kInterfaceVersion && XR_VERSION_MAJOR(info->least_api_version) <= 1 &&
+    return info != nullptr && info->structure_type == InterfaceStructure::LoaderInfo &&
+           info->structure_version == kStructureVersion && info->structure_size == sizeof *info &&
+           info->least_interface_version <= kInterfaceVersion &&
+           info->most_interface_version >= kInterfaceVersion &&
+           XR_VERSION_MAJOR(info->least_api_version) <= 1 &&
            info->most_api_version >= XR_MAKE_VERSION(1, 0, 0);
 }
 
@@ -48,8 +50,8 @@ bool isUnderstood(const NegotiateRuntimeRequest* request) {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(const NegotiateLoaderInfo* loader_info,
-                                                                                             NegotiateRuntimeRequest* request) {
+extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(
+    const NegotiateLoaderInfo* loader_info, NegotiateRuntimeRequest* request) {
     if (!isUnderstood(loader_info) || !isUnderstood(request)) { return XR_ERROR_INITIALIZATION_FAILED; }
     simulated::keepThisLibrary();
     request->interface_version = kInterfaceVersion;

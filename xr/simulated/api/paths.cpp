@@ -18,7 +18,9 @@ bool isWellFormed(std::string_view text) {
     for (std::size_t start = 1; start <= text.size();) {
         const std::size_t end = std::min(text.find('/', start), text.size());
         const std::string_view level = text.substr(start, end - start);
-        if (level.empty() || !isPathLevel(level) || level.find_first_not_of('.') == std::string_view::npos) { return false; }
+        if (level.empty() || !isPathLevel(level) || level.find_first_not_of('.') == std::string_view::npos) {
+            return false;
+        }
         start = end + 1;
     }
     return text.back() != '/';
@@ -27,17 +29,21 @@ bool isWellFormed(std::string_view text) {
 }  // namespace
 
 bool isPathLevel(std::string_view text) {
-    return std::all_of(text.begin(), text.end(),
-                       [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.'; });
+    return std::all_of(text.begin(), text.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+    });
 }
 
 XrPath Paths::pathOf(std::string_view text) {
-    if (!isWellFormed(text)) { refuse(XR_ERROR_PATH_FORMAT_INVALID, makePrintable(text), " is not a well-formed path"); }
+    if (!isWellFormed(text)) {
+        refuse(XR_ERROR_PATH_FORMAT_INVALID, makePrintable(text), " is not a well-formed path");
+    }
     const auto [entry, is_new] = paths_.try_emplace(std::string(text), texts_.size() + 1);
     if (is_new) {
         if (texts_.size() == kMostPaths) {
             paths_.erase(entry);
-            refuse(XR_ERROR_PATH_COUNT_EXCEEDED, text, " is one more than ", kMostPaths, ", the most paths that there may be");
+            refuse(XR_ERROR_PATH_COUNT_EXCEEDED, text, " is one more than ", kMostPaths,
+                   ", the most paths that there may be");
         }
         texts_.emplace_back(text);
     }
@@ -45,7 +51,8 @@ XrPath Paths::pathOf(std::string_view text) {
 }
 
 const std::string& Paths::textOf(XrPath path) const {
-    require(path != XR_NULL_PATH && path <= texts_.size(), XR_ERROR_PATH_INVALID, "the number ", path, " is not a path");
+    require(path != XR_NULL_PATH && path <= texts_.size(), XR_ERROR_PATH_INVALID, "the number ", path,
+            " is not a path");
     return texts_[path - 1];
 }
 
@@ -62,7 +69,8 @@ XrResult xrStringToPath(XrInstance instance, const char* pathString, XrPath* pat
     });
 }
 
-XrResult xrPathToString(XrInstance instance, XrPath path, uint32_t bufferCapacityInput, uint32_t* bufferCountOutput, char* buffer) {
+XrResult xrPathToString(XrInstance instance, XrPath path, uint32_t bufferCapacityInput,
+                        uint32_t* bufferCountOutput, char* buffer) {
     return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         fillString(bufferCapacityInput, bufferCountOutput, buffer, owner.paths.textOf(path));
     });

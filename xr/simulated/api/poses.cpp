@@ -15,14 +15,15 @@ Pose fromXr(const XrPosef& pose) {
 XrPosef toXr(const Pose& pose) {
     const glm::quat orientation(pose.orientation);
     const glm::vec3 position(pose.position);
-    return {{orientation.x, orientation.y, orientation.z, orientation.w}, {position.x, position.y, position.z}};
+    return {{orientation.x, orientation.y, orientation.z, orientation.w},
+            {position.x, position.y, position.z}};
 }
 
 Fov fromXr(const XrFovf& fov) { return {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}; }
 
 XrFovf toXr(const Fov& fov) {
-    return {static_cast<float>(fov.left_rad), static_cast<float>(fov.right_rad), static_cast<float>(fov.up_rad),
-            static_cast<float>(fov.down_rad)};
+    return {static_cast<float>(fov.left_rad), static_cast<float>(fov.right_rad),
+            static_cast<float>(fov.up_rad), static_cast<float>(fov.down_rad)};
 }
 
 Motion motionOf(const Pose& a_step_before, const Pose& a_step_after) {
@@ -39,9 +40,12 @@ void checkPose(const XrPosef& pose) {
     const auto& [x, y, z, w] = pose.orientation;
     const float length = std::sqrt(x * x + y * y + z * z + w * w);
     // Written so that NaN fails, too.
-    require(std::abs(length - 1) < 0.01f, XR_ERROR_POSE_INVALID, "the quaternion ", x, " ", y, " ", z, " ", w, " is not of length 1");
-    require(std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z), XR_ERROR_POSE_INVALID,
-            "the position ", pose.position.x, " ", pose.position.y, " ", pose.position.z, " is not finite");
+    require(std::abs(length - 1) < 0.01f, XR_ERROR_POSE_INVALID, "the quaternion ", x, " ", y, " ", z, " ", w,
+            " is not of length 1");
+    require(
+        std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z),
+        XR_ERROR_POSE_INVALID, "the position ", pose.position.x, " ", pose.position.y, " ", pose.position.z,
+        " is not finite");
 }
 
 }  // namespace simulated

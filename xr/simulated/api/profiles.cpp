@@ -12,15 +12,19 @@ constexpr std::string_view kProfilePrefix = "/interaction_profiles/";
 constexpr std::string_view kUserPaths[] = {"/user/hand/left", "/user/hand/right", "/user/head",
                                            "/user/gamepad",   "/user/eyes_ext",   "/user/treadmill"};
 
-bool holds(std::span<const std::string_view> names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
+bool holds(std::span<const std::string_view> names, std::string_view name) {
+    return std::ranges::find(names, name) != names.end();
+}
 
 bool isThere(const Component& component, std::string_view user_path, const Enabled& enabled) {
-    return (component.user_path.empty() || component.user_path == user_path) && enabled.meets(component.depends);
+    return (component.user_path.empty() || component.user_path == user_path) &&
+           enabled.meets(component.depends);
 }
 
 // "/input/trigger" stands for its components; "/input" and "/output" stand for nothing.
 bool isParent(std::string_view parent, std::string_view path) {
-    return parent.starts_with("/input/") && path.starts_with(parent) && path.size() > parent.size() && path[parent.size()] == '/';
+    return parent.starts_with("/input/") && path.starts_with(parent) && path.size() > parent.size() &&
+           path[parent.size()] == '/';
 }
 
 }  // namespace
@@ -28,8 +32,8 @@ bool isParent(std::string_view parent, std::string_view path) {
 std::span<const Profile> listProfiles() { return kProfiles; }
 
 const Profile* findProfile(std::string_view path) {
-    const auto found =
-        std::find_if(std::begin(kProfiles), std::end(kProfiles), [&](const Profile& profile) { return profile.path == path; });
+    const auto found = std::find_if(std::begin(kProfiles), std::end(kProfiles),
+                                    [&](const Profile& profile) { return profile.path == path; });
     return found == std::end(kProfiles) ? nullptr : &*found;
 }
 
@@ -49,7 +53,9 @@ std::string listHandProfiles() {
 }
 
 bool Enabled::meets(std::string_view depends) const {
-    const auto has = [&](std::string_view name) { return name == "XR_VERSION_1_1" ? is_1_1 : extensions.contains(name); };
+    const auto has = [&](std::string_view name) {
+        return name == "XR_VERSION_1_1" ? is_1_1 : extensions.contains(name);
+    };
     bool meets = true;
     while (!depends.empty()) {
         const std::size_t end = depends.find_first_of("+,");
@@ -64,10 +70,12 @@ bool Enabled::meets(std::string_view depends) const {
     return meets;
 }
 
-const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled) {
+const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path,
+                               const Enabled& enabled) {
     if (!holds(profile.user_paths, user_path)) { return nullptr; }
-    const auto found = std::ranges::find_if(profile.components,
-                                            [&](const Component& one) { return one.path == path && isThere(one, user_path, enabled); });
+    const auto found = std::ranges::find_if(profile.components, [&](const Component& one) {
+        return one.path == path && isThere(one, user_path, enabled);
+    });
     return found == profile.components.end() ? nullptr : &*found;
 }
 
@@ -85,7 +93,8 @@ std::string_view findNeeded(const Profile& profile, std::string_view binding) {
     const auto found = std::ranges::find_if(profile.components, [&](const Component& one) {
         return one.path == path && (one.user_path.empty() || one.user_path == user_path);
     });
-    return found == profile.components.end() || !holds(profile.user_paths, user_path) ? std::string_view() : found->depends;
+    return found == profile.components.end() || !holds(profile.user_paths, user_path) ? std::string_view()
+                                                                                      : found->depends;
 }
 
 std::optional<std::size_t> deviceOf(std::string_view user_path) {
@@ -100,7 +109,10 @@ bool isUserPath(std::string_view path) { return holds(kUserPaths, path); }
 
 std::string_view userPathOf(std::string_view binding) {
     for (const std::string_view user_path : kUserPaths) {
-        if (binding.starts_with(user_path) && binding.size() > user_path.size() && binding[user_path.size()] == '/') { return user_path; }
+        if (binding.starts_with(user_path) && binding.size() > user_path.size() &&
+            binding[user_path.size()] == '/') {
+            return user_path;
+        }
     }
     return {};
 }

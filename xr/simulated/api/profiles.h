@@ -51,7 +51,8 @@ std::string listHandProfiles();
 // be bound in this profile.
 bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled);
 // Null if the profile has no such component at this user path, with this version and these extensions.
-const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
+const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path,
+                               const Enabled& enabled);
 
 // The extension or version that this path needs in the profile, if only that is missing; else empty.
 std::string_view findNeeded(const Profile& profile, std::string_view binding);

@@ -24,14 +24,17 @@ std::vector<float> ratesOf(const Script& script) {
 
 void changeRate(Instance& instance, double rate_hz) {
     Simulation& simulation = *instance.simulation;
-    const auto before = static_cast<float>(std::exchange(simulation.rate_hz, rate_hz)), now = static_cast<float>(rate_hz);
+    const auto before = static_cast<float>(std::exchange(simulation.rate_hz, rate_hz)),
+               now = static_cast<float>(rate_hz);
     simulation.clock.setPeriod(std::llround(1e9 / rate_hz));
     if (now == before || !instance.extensions.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) { return; }
-    instance.events.push(XrEventDataDisplayRefreshRateChangedFB{XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB, nullptr, before, now});
+    instance.events.push(XrEventDataDisplayRefreshRateChangedFB{
+        XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB, nullptr, before, now});
 }
 
 XrResult xrEnumerateDisplayRefreshRatesFB(XrSession session, uint32_t displayRefreshRateCapacityInput,
-                                          uint32_t* displayRefreshRateCountOutput, float* displayRefreshRates) {
+                                          uint32_t* displayRefreshRateCountOutput,
+                                          float* displayRefreshRates) {
     return answerFor<Session>(__func__, session, [&](const Session& owner) {
         fillArray(displayRefreshRateCapacityInput, displayRefreshRateCountOutput, displayRefreshRates,
                   ratesOf(owner.instance.simulation->script));
@@ -49,14 +52,17 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
         Simulation& simulation = *owner.instance.simulation;
         const auto before = static_cast<float>(simulation.rate_hz);
         // 0 leaves the choice to the runtime.
-        const float wanted = displayRefreshRate == 0 ? static_cast<float>(simulation.script.rate_hz) : displayRefreshRate;
+        const float wanted =
+            displayRefreshRate == 0 ? static_cast<float>(simulation.script.rate_hz) : displayRefreshRate;
         const std::vector<float> rates = ratesOf(simulation.script);
-        require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
-                displayRefreshRate, " Hz was not enumerated");
+        require(std::find(rates.begin(), rates.end(), wanted) != rates.end(),
+                XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB, displayRefreshRate, " Hz was not enumerated");
         if (wanted == before) { return; }
         require(!simulation.script.rate_is_fixed, XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 "the script says that the rate is fixed, and not at ", displayRefreshRate, " Hz");
-        changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted);
+        changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz)
+                                       ? simulation.script.rate_hz
+                                       : wanted);
     });
 }
 

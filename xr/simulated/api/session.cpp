@@ -28,9 +28,9 @@ void announceRecentring(const Session& session, double change_s) {
         constexpr double kBeside = 1e-6;
         const Pose before = (simulation.script.*stage_from_space)(change_s - kBeside),
                    after = (simulation.script.*stage_from_space)(change_s + kBeside);
-        session.instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING, nullptr,
-                                                                            handleOf(session), type, change_time, XR_TRUE,
-                                                                            toXr(compose(inverse(before), after))});
+        session.instance.events.push(XrEventDataReferenceSpaceChangePending{
+            XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING, nullptr, handleOf(session), type, change_time,
+            XR_TRUE, toXr(compose(inverse(before), after))});
     };
     announce(XR_REFERENCE_SPACE_TYPE_LOCAL, &Script::stageFromLocal);
     if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) {
@@ -40,7 +40,8 @@ void announceRecentring(const Session& session, double change_s) {
 
 }  // namespace
 
-Session::Session(Instance& owner, std::unique_ptr<Device> graphics) : instance(owner), device(std::move(graphics)) {
+Session::Session(Instance& owner, std::unique_ptr<Device> graphics)
+    : instance(owner), device(std::move(graphics)) {
     instance.session = this;
 }
 
@@ -51,7 +52,8 @@ Session::~Session() {
     } catch (const std::exception& failure) { explainFailure("xrDestroySession", failure.what()); }
     instance.session = nullptr;
     // The headset was unplugged: the program must ask for everything again.
-    if (const std::uint32_t calls = instance.simulation->script.calls_after_loss; loss_announced && calls > 0) {
+    if (const std::uint32_t calls = instance.simulation->script.calls_after_loss;
+        loss_announced && calls > 0) {
         instance.simulation->calls_until_plugged = calls;
         instance.has_asked_requirements = false;
         instance.graphics_device = VK_NULL_HANDLE;
@@ -68,7 +70,8 @@ State Session::at(XrTime time) const {
 void Session::enter(XrSessionState next) {
     state = next;
     log_events.emplace_back("state ").append(wordOf(next));
-    instance.events.push(XrEventDataSessionStateChanged{XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, nullptr, handleOf(*this), next,
+    instance.events.push(XrEventDataSessionStateChanged{XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, nullptr,
+                                                        handleOf(*this), next,
                                                         instance.simulation->clock.now()});
 }
 
@@ -117,8 +120,12 @@ void Session::meetEvents(XrTime display_time) {
     const XrTime grace_ends = display_time + kFramesOfGrace * simulation.clock.period();
     for (const ScriptEvent& event : simulation.script.eventsIn(simulation.events_until_s, time_s)) {
         std::string& logged = log_events.emplace_back(nameOf(event.kind));
-        if (event.kind == ScriptEvent::Kind::kRate) { logged.append(" ").append(std::to_string(std::lround(event.value))); }
-        if (event.kind == ScriptEvent::Kind::kSlowImages) { logged.append(" ").append(std::to_string(event.count)); }
+        if (event.kind == ScriptEvent::Kind::kRate) {
+            logged.append(" ").append(std::to_string(std::lround(event.value)));
+        }
+        if (event.kind == ScriptEvent::Kind::kSlowImages) {
+            logged.append(" ").append(std::to_string(event.count));
+        }
         switch (event.kind) {
             case ScriptEvent::Kind::kRate:
                 changeRate(instance, event.value);
@@ -141,8 +148,8 @@ void Session::meetEvents(XrTime display_time) {
             case ScriptEvent::Kind::kLoseInstance:
                 instance.lost_from = grace_ends;
                 simulation.survives = true;
-                instance.events.push(
-                    XrEventDataInstanceLossPending{XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING, nullptr, *instance.lost_from});
+                instance.events.push(XrEventDataInstanceLossPending{XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING,
+                                                                    nullptr, *instance.lost_from});
                 break;
         }
     }
@@ -151,9 +158,12 @@ void Session::meetEvents(XrTime display_time) {
 
 void Session::announcePresence(const State& now) {
     const bool present = now.present && now.worn;
-    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == present) { return; }
+    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == present) {
+        return;
+    }
     announced_presence = present;
-    instance.events.push(XrEventDataUserPresenceChangedEXT{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, nullptr, handleOf(*this),
+    instance.events.push(XrEventDataUserPresenceChangedEXT{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT,
+                                                           nullptr, handleOf(*this),
                                                            static_cast<XrBool32>(present)});
 }
 
@@ -174,22 +184,28 @@ void Session::idle() {
 }
 
 void Session::announceMasks(const State& now) {
-    if (!instance.simulation->script.visibility_mask || !instance.extensions.contains(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) { return; }
+    if (!instance.simulation->script.visibility_mask ||
+        !instance.extensions.contains(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) {
+        return;
+    }
     for (const Side side : kSides) {
         if (!masked || (*masked)[side] == now.eyes[side].fov) { continue; }
-        instance.events.push(XrEventDataVisibilityMaskChangedKHR{XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr, handleOf(*this),
-                                                                 view_configuration, static_cast<std::uint32_t>(side)});
+        instance.events.push(XrEventDataVisibilityMaskChangedKHR{
+            XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr, handleOf(*this), view_configuration,
+            static_cast<std::uint32_t>(side)});
     }
     masked = {now.eyes[kLeft].fov, now.eyes[kRight].fov};
 }
 
 void checkNotLost(const Session& session) {
     checkNotLost(session.instance);
-    require(!session.lost_from || session.instance.simulation->clock.now() < *session.lost_from, XR_ERROR_SESSION_LOST,
-            "the script lost the session");
+    require(!session.lost_from || session.instance.simulation->clock.now() < *session.lost_from,
+            XR_ERROR_SESSION_LOST, "the script lost the session");
 }
 
-void checkRunning(const Session& session) { require(session.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run"); }
+void checkRunning(const Session& session) {
+    require(session.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+}
 
 XrResult successOf(const Session& session, XrResult success) {
     return session.loss_announced && XR_SUCCEEDED(success) ? XR_SESSION_LOSS_PENDING : success;

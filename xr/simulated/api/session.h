@@ -89,7 +89,9 @@ void checkRunning(const Session& session);
 
 // While a loss is pending, every success becomes XR_SESSION_LOSS_PENDING.
 XrResult successOf(const Session& session, XrResult success);
-inline XrResult successOf(const SessionChild& child, XrResult success) { return successOf(child.session, success); }
+inline XrResult successOf(const SessionChild& child, XrResult success) {
+    return successOf(child.session, success);
+}
 
 // Another display rate, from the next frame on; the application is told if it enabled the extension.
 void changeRate(Instance& instance, double rate_hz);

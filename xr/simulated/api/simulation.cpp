@@ -29,7 +29,10 @@ std::optional<Output> makeOutput(const Script& script) {
     const std::filesystem::path folder(setting.value);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) { throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" + error.message() + ")"); }
+    if (error) {
+        throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" +
+                                 error.message() + ")");
+    }
     removeOldOutput(folder, script.writes_pictures, script.frames);
     return Output{folder, FrameLog(folder / kLogName)};
 }
@@ -40,7 +43,10 @@ std::string findFavouriteProfile(const Script& script) {
     const std::string name = setting.isSet() ? setting.value : script.profile;
     if (name.empty()) { return {}; }
     const Profile* const profile = findHandProfile(name);
-    if (profile == nullptr) { throw std::runtime_error(setting.variable + " is '" + name + "', must be one of: " + listHandProfiles()); }
+    if (profile == nullptr) {
+        throw std::runtime_error(setting.variable + " is '" + name +
+                                 "', must be one of: " + listHandProfiles());
+    }
     checkInputs(script, *profile);
     return std::string(profile->path);
 }
@@ -54,7 +60,9 @@ std::unique_ptr<Simulation>& getSurvivor() {
 
 std::string originOfEnvironment() {
     std::string origin;
-    for (const char* name : {"SCRIPT", "CLOCK", "OUT", "PROFILE"}) { origin.append(settingOf(name).value).append("\n"); }
+    for (const char* name : {"SCRIPT", "CLOCK", "OUT", "PROFILE"}) {
+        origin.append(settingOf(name).value).append("\n");
+    }
     return origin;
 }
 
@@ -74,12 +82,15 @@ std::unique_ptr<Simulation> Simulation::begin() {
         return survived;
     }
     Script script = loadScriptOfEnvironment();
-    for (const std::string& note : script.notes) { std::fprintf(stderr, "simulated runtime: %s\n", note.c_str()); }
+    for (const std::string& note : script.notes) {
+        std::fprintf(stderr, "simulated runtime: %s\n", note.c_str());
+    }
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz), script.irregularity);
     std::string profile = findFavouriteProfile(script);
     std::optional<Output> output = makeOutput(script);
     const double rate_hz = script.rate_hz;
-    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, std::move(output), std::move(profile), rate_hz});
+    return std::make_unique<Simulation>(
+        Simulation{origin, std::move(script), clock, std::move(output), std::move(profile), rate_hz});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {

@@ -11,9 +11,9 @@
 namespace simulated {
 namespace {
 
-constexpr XrInputSourceLocalizedNameFlags kAllComponents = XR_INPUT_SOURCE_LOCALIZED_NAME_USER_PATH_BIT |
-                                                           XR_INPUT_SOURCE_LOCALIZED_NAME_INTERACTION_PROFILE_BIT |
-                                                           XR_INPUT_SOURCE_LOCALIZED_NAME_COMPONENT_BIT;
+constexpr XrInputSourceLocalizedNameFlags kAllComponents =
+    XR_INPUT_SOURCE_LOCALIZED_NAME_USER_PATH_BIT | XR_INPUT_SOURCE_LOCALIZED_NAME_INTERACTION_PROFILE_BIT |
+    XR_INPUT_SOURCE_LOCALIZED_NAME_COMPONENT_BIT;
 
 std::string titleOfUserPath(std::string_view user_path) {
     if (user_path == "/user/hand/left") { return "Left hand"; }
@@ -46,7 +46,8 @@ const Profile* profileOf(const Session& session, std::string_view user_path) {
 }
 
 // A line in the log for each controller that would vibrate.
-void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_path, const std::string& what) {
+void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_path,
+               const std::string& what) {
     if (session.state != XR_SESSION_STATE_FOCUSED) { return; }
     for (const BoundSource& source : action.sources) {
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) { continue; }
@@ -56,35 +57,46 @@ void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_
 }
 
 // Even before the session begins: haptics are dropped then.
-XrResult successOfHaptic(const Session& session) { return session.state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED; }
+XrResult successOfHaptic(const Session& session) {
+    return session.state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
+}
 
 }  // namespace
 
-XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPath, XrInteractionProfileState* interactionProfile) {
+XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPath,
+                                        XrInteractionProfileState* interactionProfile) {
     return answerFor<Session>(__func__, session, [&](Session& owner) {
-        XrInteractionProfileState& output = checkStruct(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
+        XrInteractionProfileState& output =
+            checkStruct(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
         const std::string& user_path = owner.instance.paths.textOf(topLevelUserPath);
-        require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, user_path, " is not a top-level user path");
+        require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, user_path,
+                " is not a top-level user path");
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const Profile* const profile = profileOf(owner, user_path);
-        output.interactionProfile = profile != nullptr ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;
+        output.interactionProfile =
+            profile != nullptr ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;
     });
 }
 
-XrResult xrEnumerateBoundSourcesForAction(XrSession session, const XrBoundSourcesForActionEnumerateInfo* enumerateInfo,
-                                          uint32_t sourceCapacityInput, uint32_t* sourceCountOutput, XrPath* sources) {
+XrResult xrEnumerateBoundSourcesForAction(XrSession session,
+                                          const XrBoundSourcesForActionEnumerateInfo* enumerateInfo,
+                                          uint32_t sourceCapacityInput, uint32_t* sourceCountOutput,
+                                          XrPath* sources) {
     return answerFor<Session>(__func__, session, [&](Session& owner) {
         const auto& info = checkStruct(enumerateInfo, XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO);
         std::vector<XrPath> paths;
         for (const BoundSource& source : getAttached(owner, info.action).sources) {
-            if (std::find(paths.begin(), paths.end(), source.path) == paths.end()) { paths.push_back(source.path); }
+            if (std::find(paths.begin(), paths.end(), source.path) == paths.end()) {
+                paths.push_back(source.path);
+            }
         }
         fillArray(sourceCapacityInput, sourceCountOutput, sources, paths);
     });
 }
 
-XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLocalizedNameGetInfo* getInfo, uint32_t bufferCapacityInput,
-                                       uint32_t* bufferCountOutput, char* buffer) {
+XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLocalizedNameGetInfo* getInfo,
+                                       uint32_t bufferCapacityInput, uint32_t* bufferCountOutput,
+                                       char* buffer) {
     return answerFor<Session>(__func__, session, [&](Session& owner) {
         const auto& info = checkStruct(getInfo, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
         checkFlags(info.whichComponents, kAllComponents, "whichComponents");
@@ -92,11 +104,14 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const std::string_view user_path = userPathOf(path);
         const std::string_view component = std::string_view(path).substr(user_path.size());
-        const bool is_source = !user_path.empty() && (component.starts_with("/input/") || component.starts_with("/output/"));
+        const bool is_source =
+            !user_path.empty() && (component.starts_with("/input/") || component.starts_with("/output/"));
         require(is_source, XR_ERROR_PATH_UNSUPPORTED, path, " is not the path of a source");
         std::string name;
         const auto append = [&](XrInputSourceLocalizedNameFlags part, const std::string& title) {
-            if ((info.whichComponents & part) != 0 && !title.empty()) { name += (name.empty() ? "" : " ") + title; }
+            if ((info.whichComponents & part) != 0 && !title.empty()) {
+                name += (name.empty() ? "" : " ") + title;
+            }
         };
         append(XR_INPUT_SOURCE_LOCALIZED_NAME_USER_PATH_BIT, titleOfUserPath(user_path));
         if (const Profile* profile = profileOf(owner, user_path)) {
@@ -107,16 +122,19 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
     });
 }
 
-XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapticActionInfo, const XrHapticBaseHeader* hapticFeedback) {
+XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapticActionInfo,
+                               const XrHapticBaseHeader* hapticFeedback) {
     return answerFor<Session>(__func__, session, [&](Session& owner) {
         const AttachedAction& action = checkHaptic(owner, hapticActionInfo);
-        const auto& vibration = reinterpret_cast<const XrHapticVibration&>(checkStruct(hapticFeedback, XR_TYPE_HAPTIC_VIBRATION));
+        const auto& vibration =
+            reinterpret_cast<const XrHapticVibration&>(checkStruct(hapticFeedback, XR_TYPE_HAPTIC_VIBRATION));
         const bool has_duration = vibration.duration > 0 || vibration.duration == XR_MIN_HAPTIC_DURATION;
         require(has_duration, XR_ERROR_VALIDATION_FAILURE, "the duration is ", vibration.duration,
                 ", must be positive or XR_MIN_HAPTIC_DURATION");
-        const bool is_in_range = vibration.amplitude >= 0 && vibration.amplitude <= 1 && vibration.frequency >= 0;
-        require(is_in_range, XR_ERROR_VALIDATION_FAILURE, "the amplitude is ", vibration.amplitude, ", must be 0 to 1, and the frequency ",
-                vibration.frequency, ", must not be negative");
+        const bool is_in_range =
+            vibration.amplitude >= 0 && vibration.amplitude <= 1 && vibration.frequency >= 0;
+        require(is_in_range, XR_ERROR_VALIDATION_FAILURE, "the amplitude is ", vibration.amplitude,
+                ", must be 0 to 1, and the frequency ", vibration.frequency, ", must not be negative");
         std::string pulse = "on ";
         append(pulse, vibration.duration);
         pulse += ' ';

@@ -24,9 +24,11 @@ struct Space : SessionChild {
 // XR_ERROR_HANDLE_INVALID also for a space of another session.
 Space& getSpace(const Session& session, XrSpace space);
 
-constexpr XrSpaceLocationFlags kPoseKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
-                                            XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
-constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
+constexpr XrSpaceLocationFlags kPoseKnown =
+    XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
+    XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+constexpr XrSpaceVelocityFlags kVelocityKnown =
+    XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
 
 // None while the controller behind it is inactive or not tracked.
 std::optional<Pose> stageFromSpace(const Space& space, const State& state);

@@ -28,7 +28,9 @@ bool isUtf8(std::string_view text) {
             code = code << 6 | (byte & 0x3F);
         }
         constexpr std::uint32_t kLeast[4] = {0, 0x80, 0x800, 0x10000};
-        if (code < kLeast[followers] || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) { return false; }
+        if (code < kLeast[followers] || code > 0x10FFFF || (code >= 0xD800 && code <= 0xDFFF)) {
+            return false;
+        }
         i += followers + 1;
     }
     return true;
@@ -39,7 +41,8 @@ bool isUtf8(std::string_view text) {
 void checkChain(const void* next) {
     int length = 0;
     for (auto* link = static_cast<const XrBaseInStructure*>(next); link != nullptr; link = link->next) {
-        require(++length <= kLongestChain, XR_ERROR_VALIDATION_FAILURE, "a next chain does not end after ", kLongestChain, " structures");
+        require(++length <= kLongestChain, XR_ERROR_VALIDATION_FAILURE, "a next chain does not end after ",
+                kLongestChain, " structures");
     }
 }
 

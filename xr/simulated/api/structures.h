@@ -26,7 +26,8 @@ T* findInChain(const void* next, XrStructureType type) {
 
 template <class T>
 void checkType(const T& structure, XrStructureType type) {
-    require(structure.type == type, XR_ERROR_VALIDATION_FAILURE, "a structure is of type ", structure.type, ", must be ", type);
+    require(structure.type == type, XR_ERROR_VALIDATION_FAILURE, "a structure is of type ", structure.type,
+            ", must be ", type);
     checkChain(structure.next);
 }
 
@@ -52,13 +53,15 @@ T& checkOutput(T* output) {
 // `what` names the contents for a message.
 template <class T>
 std::span<T> checkArray(T* array, std::uint32_t count, const char* what) {
-    require(array != nullptr || count == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ", count, " ", what, " is missing");
+    require(array != nullptr || count == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ", count, " ", what,
+            " is missing");
     return {array, count};
 }
 
 // Requires at least one flag, and only known ones.
 inline void checkFlags(XrFlags64 flags, XrFlags64 known, const char* name) {
-    require(flags != 0 && (flags & ~known) == 0, XR_ERROR_VALIDATION_FAILURE, name, " is ", flags, ", must be of the bits ", known);
+    require(flags != 0 && (flags & ~known) == 0, XR_ERROR_VALIDATION_FAILURE, name, " is ", flags,
+            ", must be of the bits ", known);
 }
 
 // The two-call idiom's first half. True: there is room, copy. False: only the count was asked for.
@@ -66,7 +69,8 @@ inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void*
     require(count != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the count is missing");
     *count = static_cast<std::uint32_t>(size);
     if (capacity == 0) { return false; }
-    require(capacity >= size, XR_ERROR_SIZE_INSUFFICIENT, "the array has room for ", capacity, ", must have for ", size);
+    require(capacity >= size, XR_ERROR_SIZE_INSUFFICIENT, "the array has room for ", capacity,
+            ", must have for ", size);
     require(array != nullptr || size == 0, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
     return true;
 }
@@ -78,7 +82,9 @@ void fillArray(std::uint32_t capacity, std::uint32_t* count, T* array, const std
 
 // With the terminating zero, which is counted.
 inline void fillString(std::uint32_t capacity, std::uint32_t* count, char* buffer, const std::string& text) {
-    if (wantsArray(capacity, count, buffer, text.size() + 1)) { std::memcpy(buffer, text.c_str(), text.size() + 1); }
+    if (wantsArray(capacity, count, buffer, text.size() + 1)) {
+        std::memcpy(buffer, text.c_str(), text.size() + 1);
+    }
 }
 
 // An application's text, in quotes and without characters that a line cannot show.

@@ -10,7 +10,8 @@ namespace simulated {
 // True if this is one of these layers, and its extension is enabled.
 bool isSurrounding(const Session& session, XrStructureType type);
 void checkSurrounding(const Session& session, const XrCompositionLayerBaseHeader& layer);
-Layer makeSurroundingLayer(const Session& session, const XrCompositionLayerBaseHeader& layer, const Pose& stage_from_space);
+Layer makeSurroundingLayer(const Session& session, const XrCompositionLayerBaseHeader& layer,
+                           const Pose& stage_from_space);
 void logSurrounding(const Session& session, const XrCompositionLayerBaseHeader& layer, LoggedLayer& entry);
 
 // XR_ERROR_VALIDATION_FAILURE.

@@ -19,9 +19,14 @@ namespace {
 struct Tangents {
     double left, right, up, down;
     explicit Tangents(const Fov& fov)
-        : left(std::tan(fov.left_rad)), right(std::tan(fov.right_rad)), up(std::tan(fov.up_rad)), down(std::tan(fov.down_rad)) {}
+        : left(std::tan(fov.left_rad)),
+          right(std::tan(fov.right_rad)),
+          up(std::tan(fov.up_rad)),
+          down(std::tan(fov.down_rad)) {}
 
-    [[nodiscard]] glm::dvec3 direction(const glm::dvec2& uv) const { return {left + (right - left) * uv.x, up + (down - up) * uv.y, -1.0}; }
+    [[nodiscard]] glm::dvec3 direction(const glm::dvec2& uv) const {
+        return {left + (right - left) * uv.x, up + (down - up) * uv.y, -1.0};
+    }
     // Where a direction meets the view; none behind it.
     [[nodiscard]] std::optional<glm::dvec2> uvOf(const glm::dvec3& direction) const {
         if (!(direction.z < 0.0)) { return std::nullopt; }
@@ -43,11 +48,13 @@ public:
     SeenView(const EyeView& eye, const ProjectionView& view)
         : sampler_(view.picture, view.rect),
           tangents_(view.fov),
-          view_from_eye_(glm::mat3_cast(glm::conjugate(view.stage_from_view.orientation) * eye.stage_from_eye.orientation)) {
+          view_from_eye_(glm::mat3_cast(glm::conjugate(view.stage_from_view.orientation) *
+                                        eye.stage_from_eye.orientation)) {
         shift_px_ = findShift(eye, view.rect.extent);
     }
 
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const {
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y,
+                                               const glm::dvec3& direction_eye) const {
         if (shift_px_) { return sampler_.texel(x + shift_px_->x, y + shift_px_->y); }
         const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * direction_eye);
         return uv ? sampler_.sampleInside(uv->x, uv->y) : std::nullopt;
@@ -60,12 +67,17 @@ private:
         constexpr double kSameGrid_px = 0.02;
         const Tangents eye_tangents(eye.fov);
         const auto placeOf = [&](const glm::dvec2& corner) {
-            const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * eye_tangents.direction(corner));
+            const std::optional<glm::dvec2> uv =
+                tangents_.uvOf(view_from_eye_ * eye_tangents.direction(corner));
             return uv ? *uv * glm::dvec2(extent) : glm::dvec2(-1.0);
         };
         const glm::dvec2 first = glm::round(placeOf({0.0, 0.0})), last = first + glm::dvec2(eye.size_px);
-        if (glm::any(glm::lessThan(first, glm::dvec2(0.0))) || glm::any(glm::greaterThan(last, glm::dvec2(extent)))) { return {}; }
-        for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+        if (glm::any(glm::lessThan(first, glm::dvec2(0.0))) ||
+            glm::any(glm::greaterThan(last, glm::dvec2(extent)))) {
+            return {};
+        }
+        for (const glm::dvec2 corner :
+             {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
             const glm::dvec2 moved_px = placeOf(corner) - (first + corner * glm::dvec2(eye.size_px));
             if (!(glm::length(moved_px) < kSameGrid_px)) { return {}; }
         }
@@ -82,11 +94,14 @@ private:
 class SeenProjection {
 public:
     SeenProjection(const EyeView& eye, const ProjectionLayer& layer, Side side) {
-        if (const auto& inset = layer.insets[side]; inset && !isEmpty(inset->rect)) { views_.emplace_back(eye, *inset); }
+        if (const auto& inset = layer.insets[side]; inset && !isEmpty(inset->rect)) {
+            views_.emplace_back(eye, *inset);
+        }
         if (!isEmpty(layer.views[side].rect)) { views_.emplace_back(eye, layer.views[side]); }
     }
 
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const {
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y,
+                                               const glm::dvec3& direction_eye) const {
         std::optional<glm::dvec4> texel;
         for (const SeenView& view : views_) {
             if (!texel) { texel = view.at(x, y, direction_eye); }
@@ -103,7 +118,8 @@ public:
     SeenQuad(const EyeView& eye, const QuadLayer& quad)
         : sampler_(quad.picture, quad.rect), rays_(eye, quad.stage_from_quad), size_m_(quad.size_m) {}
 
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t,
+                                               const glm::dvec3& direction_eye) const {
         const glm::dvec3 direction = rays_.layer_from_eye * direction_eye;
         // From the front only, and only ahead: the eye is on the +z side and looks towards -z.
         if (!(rays_.eye.z > 0.0) || !(direction.z < 0.0)) { return std::nullopt; }
@@ -121,7 +137,9 @@ private:
 class SeenRoom {
 public:
     explicit SeenRoom(const RoomLayer& layer) : texel_(layer.opacity * layer.light, layer.opacity) {}
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t, const glm::dvec3&) const { return texel_; }
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t, const glm::dvec3&) const {
+        return texel_;
+    }
 
 private:
     glm::dvec4 texel_;
@@ -142,7 +160,9 @@ std::vector<SeenLayer> listSeen(const EyeView& eye, Side side, std::span<const L
         if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
             seen.push_back({SeenProjection(eye, *projection, side), projection->blending});
         } else if (const auto* quad = std::get_if<QuadLayer>(&layer)) {
-            if (isShownTo(side, quad->visibility) && !isEmpty(quad->rect)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
+            if (isShownTo(side, quad->visibility) && !isEmpty(quad->rect)) {
+                seen.push_back({SeenQuad(eye, *quad), quad->blending});
+            }
         } else if (const auto* cylinder = std::get_if<CylinderLayer>(&layer)) {
             if (isShownTo(side, cylinder->visibility) && !isEmpty(cylinder->rect)) {
                 seen.push_back({SeenCylinder(eye, *cylinder), cylinder->blending});
@@ -164,13 +184,15 @@ std::vector<SeenLayer> listSeen(const EyeView& eye, Side side, std::span<const L
 glm::dvec4 blend(const glm::dvec4& below, const glm::dvec4& texel, const Blending& blending) {
     if (!blending.texture_source_alpha) { return {glm::dvec3(texel), 1.0}; }
     const double alpha = std::clamp(texel.a, 0.0, 1.0);
-    const glm::dvec3 premultiplied = blending.unpremultiplied_alpha ? glm::dvec3(texel) * alpha : glm::dvec3(texel);
+    const glm::dvec3 premultiplied =
+        blending.unpremultiplied_alpha ? glm::dvec3(texel) * alpha : glm::dvec3(texel);
     return glm::dvec4(premultiplied, alpha) + below * (1.0 - alpha);
 }
 
 }  // namespace
 
-RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop) {
+RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers,
+                      const Backdrop& backdrop) {
     const std::vector<SeenLayer> seen = listSeen(eye, side, layers);
     const Tangents tangents(eye.fov);
     RgbPicture picture{eye.size_px, {}};
@@ -180,11 +202,14 @@ RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> laye
             const glm::dvec3 direction_eye = tangents.direction(pixelCentre(eye.size_px, x, y));
             glm::dvec4 light(0.0);
             for (const SeenLayer& layer : seen) {
-                const auto texel = std::visit([&](const auto& shape) { return shape.at(x, y, direction_eye); }, layer.shape);
+                const auto texel =
+                    std::visit([&](const auto& shape) { return shape.at(x, y, direction_eye); }, layer.shape);
                 if (texel) { light = blend(light, *texel, layer.blending); }
             }
             light += glm::dvec4((backdrop.adds ? 1.0 : 1.0 - light.a) * backdrop.light, 0.0);
-            for (const double value : {light.r, light.g, light.b}) { picture.bytes.push_back(srgbByte(value)); }
+            for (const double value : {light.r, light.g, light.b}) {
+                picture.bytes.push_back(srgbByte(value));
+            }
         }
     }
     return picture;
@@ -197,7 +222,8 @@ RgbPicture putSideBySide(const RgbPicture& left, const RgbPicture& right) {
     for (const RgbPicture* picture : {&left, &right}) {
         const std::size_t row_bytes = std::size_t{3} * picture->size_px.x;
         for (std::size_t y = 0; y < picture->size_px.y; ++y) {
-            std::copy_n(picture->bytes.data() + y * row_bytes, row_bytes, both.bytes.data() + 3 * (y * both.size_px.x + first_column));
+            std::copy_n(picture->bytes.data() + y * row_bytes, row_bytes,
+                        both.bytes.data() + 3 * (y * both.size_px.x + first_column));
         }
         first_column += picture->size_px.x;
     }

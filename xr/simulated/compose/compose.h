@@ -136,7 +136,8 @@ struct Backdrop {
 // orientation to the eye's, by directions; nothing is drawn where the view had no picture. An inset replaces
 // that part of its eye's view, edges included; the two are blended as one picture. Of a view that has the
 // eye's own pixels, and perhaps more around them, an sRGB picture comes through byte for byte.
-[[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop = {});
+[[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers,
+                                    const Backdrop& backdrop = {});
 
 // Left and right eye side by side, at the top of a picture as tall as the taller one.
 [[nodiscard]] RgbPicture putSideBySide(const RgbPicture& left, const RgbPicture& right);

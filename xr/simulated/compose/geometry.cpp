@@ -27,12 +27,14 @@ Span makeSpan(double middle, double half, const Span& whole) {
 }
 
 std::vector<glm::vec2> ellipse(const Fov& fov) {
-    const double left = std::tan(fov.left_rad), right = std::tan(fov.right_rad), up = std::tan(fov.up_rad), down = std::tan(fov.down_rad);
+    const double left = std::tan(fov.left_rad), right = std::tan(fov.right_rad), up = std::tan(fov.up_rad),
+                 down = std::tan(fov.down_rad);
     std::vector<glm::vec2> corners;
     for (std::uint32_t i = 0; i < kOutlineCorners; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / kOutlineCorners;
-        corners.emplace_back(static_cast<float>(0.5 * (left + right) + 0.5 * (right - left) * std::cos(angle)),
-                             static_cast<float>(0.5 * (down + up) + 0.5 * (up - down) * std::sin(angle)));
+        corners.emplace_back(
+            static_cast<float>(0.5 * (left + right) + 0.5 * (right - left) * std::cos(angle)),
+            static_cast<float>(0.5 * (down + up) + 0.5 * (up - down) * std::sin(angle)));
     }
     return corners;
 }
@@ -40,7 +42,8 @@ std::vector<glm::vec2> ellipse(const Fov& fov) {
 }  // namespace
 
 Pose compose(const Pose& a_from_b, const Pose& b_from_c) {
-    return {glm::normalize(a_from_b.orientation * b_from_c.orientation), transform(a_from_b, b_from_c.position)};
+    return {glm::normalize(a_from_b.orientation * b_from_c.orientation),
+            transform(a_from_b, b_from_c.position)};
 }
 
 Pose inverse(const Pose& a_from_b) {
@@ -48,10 +51,13 @@ Pose inverse(const Pose& a_from_b) {
     return {turned_back, -(turned_back * a_from_b.position)};
 }
 
-glm::dvec3 transform(const Pose& a_from_b, const glm::dvec3& point_b) { return a_from_b.orientation * point_b + a_from_b.position; }
+glm::dvec3 transform(const Pose& a_from_b, const glm::dvec3& point_b) {
+    return a_from_b.orientation * point_b + a_from_b.position;
+}
 
 Pose interpolate(const Pose& from, const Pose& to, double share) {
-    return {glm::normalize(glm::slerp(from.orientation, to.orientation, share)), glm::mix(from.position, to.position, share)};
+    return {glm::normalize(glm::slerp(from.orientation, to.orientation, share)),
+            glm::mix(from.position, to.position, share)};
 }
 
 Pose makeLevel(const Pose& pose) {
@@ -72,13 +78,16 @@ Fov makeInset(const Fov& fov, const glm::dvec2& middle_rad, double half_angle_ra
 Pose headFromEye(Side side, double eye_distance_m, double cant_rad) {
     const double outwards = side == kLeft ? -1.0 : 1.0;
     // A positive turn about y looks to the left.
-    return {glm::angleAxis(-outwards * cant_rad, glm::dvec3(0.0, 1.0, 0.0)), {outwards * 0.5 * eye_distance_m, 0.0, 0.0}};
+    return {glm::angleAxis(-outwards * cant_rad, glm::dvec3(0.0, 1.0, 0.0)),
+            {outwards * 0.5 * eye_distance_m, 0.0, 0.0}};
 }
 
 Mesh makeHiddenMesh(const Fov& fov) {
     Mesh mesh{ellipse(fov), {}};
-    const auto left = static_cast<float>(std::tan(fov.left_rad)), right = static_cast<float>(std::tan(fov.right_rad));
-    const auto up = static_cast<float>(std::tan(fov.up_rad)), down = static_cast<float>(std::tan(fov.down_rad));
+    const auto left = static_cast<float>(std::tan(fov.left_rad)),
+               right = static_cast<float>(std::tan(fov.right_rad));
+    const auto up = static_cast<float>(std::tan(fov.up_rad)),
+               down = static_cast<float>(std::tan(fov.down_rad));
     // In the order in which the ellipse passes them: a fan from each corner of the view to its quarter.
     mesh.vertices.insert(mesh.vertices.end(), {{right, up}, {left, up}, {left, down}, {right, down}});
     for (std::uint32_t i = 0; i < kOutlineCorners; ++i) {

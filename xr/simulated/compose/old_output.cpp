@@ -49,8 +49,10 @@ bool isOurLog(const fs::path& path) {
     std::error_code error;
     if (fs::file_size(path, error) == 0 && !error) { return true; }
     std::string beginning(40, ' ');
-    std::ifstream(path, std::ios::binary).read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-    return beginning.starts_with("{\"frame\":0,\"display_time_ns\":") || beginning.starts_with("{\"refused\":\"XR_ERROR_") ||
+    std::ifstream(path, std::ios::binary)
+        .read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    return beginning.starts_with("{\"frame\":0,\"display_time_ns\":") ||
+           beginning.starts_with("{\"refused\":\"XR_ERROR_") ||
            beginning.starts_with("{\"session_state\":\"");
 }
 
@@ -75,7 +77,8 @@ std::string namePicture(std::uint64_t frame) { return fmt::format("frame_{:06}.p
 
 void removeOldOutput(const fs::path& folder, bool writes_pictures, const FrameChoice& frames) {
     const auto refuse = [](const fs::path& path) {
-        throw std::runtime_error(path.string() + ": not what an earlier run left here, must be moved elsewhere");
+        throw std::runtime_error(path.string() +
+                                 ": not what an earlier run left here, must be moved elsewhere");
     };
     const fs::path log = folder / kLogName;
     std::error_code error;

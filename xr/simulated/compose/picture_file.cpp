@@ -73,12 +73,17 @@ RgbPicture readPng(const fs::path& path) {
     if (!file) { refuse(path, "read", std::strerror(errno)); }
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
     PngImage image;
-    if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) { refuse(path, "read", image.message); }
+    if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) {
+        refuse(path, "read", image.message);
+    }
     if ((image.format & PNG_FORMAT_FLAG_COLOR) == 0) { refuse(path, "read", "not a colour picture"); }
     image.format = PNG_FORMAT_RGB;
-    RgbPicture picture{{image.width, image.height}, std::vector<std::uint8_t>(std::size_t{3} * image.width * image.height)};
+    RgbPicture picture{{image.width, image.height},
+                       std::vector<std::uint8_t>(std::size_t{3} * image.width * image.height)};
     const png_color black{0, 0, 0};
-    if (png_image_finish_read(&image, &black, picture.bytes.data(), 0, nullptr) == 0) { refuse(path, "read", image.message); }
+    if (png_image_finish_read(&image, &black, picture.bytes.data(), 0, nullptr) == 0) {
+        refuse(path, "read", image.message);
+    }
     return picture;
 }
 

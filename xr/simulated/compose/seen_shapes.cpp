@@ -36,7 +36,8 @@ LayerRays::LayerRays(const EyeView& eye_view, const Pose& stage_from_layer) {
 SeenCylinder::SeenCylinder(const EyeView& eye, const CylinderLayer& layer)
     : sampler_(layer.picture, layer.rect), rays_(eye, layer.stage_from_cylinder), layer_(layer) {}
 
-std::optional<glm::dvec4> SeenCylinder::at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
+std::optional<glm::dvec4> SeenCylinder::at(std::uint32_t, std::uint32_t,
+                                           const glm::dvec3& direction_eye) const {
     const double radius_m = layer_.radius_m, angle_rad = layer_.central_angle_rad;
     if (!(angle_rad > 0.0)) { return std::nullopt; }
     const glm::dvec3 direction = rays_.layer_from_eye * direction_eye;
@@ -45,32 +46,35 @@ std::optional<glm::dvec4> SeenCylinder::at(std::uint32_t, std::uint32_t, const g
     if (!(level > 0.0)) { return std::nullopt; }  // straight up or down
     if (isFinite(radius_m)) {
         const glm::dvec3& from = rays_.eye;
-        const auto t =
-            findWayOut(level * level, direction.x * from.x + direction.z * from.z, from.x * from.x + from.z * from.z - radius_m * radius_m);
+        const auto t = findWayOut(level * level, direction.x * from.x + direction.z * from.z,
+                                  from.x * from.x + from.z * from.z - radius_m * radius_m);
         if (!t) { return std::nullopt; }
         place = (from + *t * direction) / radius_m;
     }
     // On the cylinder of radius 1 the picture is as wide as its angle.
-    return sampler_.sampleInside(0.5 + longitude(place) / angle_rad, 0.5 - place.y * layer_.aspect_ratio / angle_rad);
+    return sampler_.sampleInside(0.5 + longitude(place) / angle_rad,
+                                 0.5 - place.y * layer_.aspect_ratio / angle_rad);
 }
 
 SeenSphere::SeenSphere(const EyeView& eye, const SphereLayer& layer)
     : sampler_(layer.picture, layer.rect), rays_(eye, layer.stage_from_sphere), layer_(layer) {}
 
-std::optional<glm::dvec4> SeenSphere::at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
+std::optional<glm::dvec4> SeenSphere::at(std::uint32_t, std::uint32_t,
+                                         const glm::dvec3& direction_eye) const {
     const double upper_rad = layer_.upper_angle_rad, lower_rad = layer_.lower_angle_rad;
     if (!(layer_.horizontal_angle_rad > 0.0) || !(upper_rad > lower_rad)) { return std::nullopt; }
     const glm::dvec3 direction = rays_.layer_from_eye * direction_eye;
     glm::dvec3 place = direction;
     if (isFinite(layer_.radius_m)) {
         const glm::dvec3& from = rays_.eye;
-        const auto t =
-            findWayOut(glm::dot(direction, direction), glm::dot(direction, from), glm::dot(from, from) - layer_.radius_m * layer_.radius_m);
+        const auto t = findWayOut(glm::dot(direction, direction), glm::dot(direction, from),
+                                  glm::dot(from, from) - layer_.radius_m * layer_.radius_m);
         if (!t) { return std::nullopt; }
         place = from + *t * direction;
     }
     const double latitude = std::asin(std::clamp(place.y / glm::length(place), -1.0, 1.0));
-    return sampler_.sampleInside(0.5 + longitude(place) / layer_.horizontal_angle_rad, (upper_rad - latitude) / (upper_rad - lower_rad));
+    return sampler_.sampleInside(0.5 + longitude(place) / layer_.horizontal_angle_rad,
+                                 (upper_rad - latitude) / (upper_rad - lower_rad));
 }
 
 SeenCube::SeenCube(const EyeView& eye, const CubeLayer& layer) : rays_(eye, {layer.stage_from_cube, {}}) {

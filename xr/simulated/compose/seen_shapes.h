@@ -23,7 +23,8 @@ struct LayerRays {
 class SeenCylinder {
 public:
     SeenCylinder(const EyeView& eye, const CylinderLayer& layer);
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const;
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y,
+                                               const glm::dvec3& direction_eye) const;
 
 private:
     Sampler sampler_;
@@ -34,7 +35,8 @@ private:
 class SeenSphere {
 public:
     SeenSphere(const EyeView& eye, const SphereLayer& layer);
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const;
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y,
+                                               const glm::dvec3& direction_eye) const;
 
 private:
     Sampler sampler_;
@@ -45,7 +47,8 @@ private:
 class SeenCube {
 public:
     SeenCube(const EyeView& eye, const CubeLayer& layer);
-    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const;
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y,
+                                               const glm::dvec3& direction_eye) const;
 
 private:
     std::vector<Sampler> faces_;

@@ -25,7 +25,9 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
     for (const Side side : kSides) {
         const EyeState& eye = state.eyes[side];
         record.eyes[side] = {eye.stage_from_eye, eye.fov, {}};
-        if (has_insets) { record.eyes[side].inset = simulation.script.findInset(state, side, session.moves_insets); }
+        if (has_insets) {
+            record.eyes[side].inset = simulation.script.findInset(state, side, session.moves_insets);
+        }
     }
     record.layers = loggedLayers(session, info, state);
     record.events = std::exchange(session.log_events, {});
@@ -36,17 +38,19 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
 Backdrop backdropOf(const Script& script, const XrFrameEndInfo& info) {
     if (info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE) { return {}; }
     const glm::dvec3& room = script.room_colour;
-    return {{decodeSrgb(room.r), decodeSrgb(room.g), decodeSrgb(room.b)}, info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_ADDITIVE};
+    return {{decodeSrgb(room.r), decodeSrgb(room.g), decodeSrgb(room.b)},
+            info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_ADDITIVE};
 }
 
-void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state, const std::filesystem::path& path) {
+void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state,
+                  const std::filesystem::path& path) {
     const Simulation& simulation = *session.instance.simulation;
     const std::vector<Layer> layers = makeLayers(session, info, state);
     std::array<RgbPicture, kEyes> pictures;
     for (const Side side : kSides) {
         const EyeState& eye = state.eyes[side];
-        pictures[side] =
-            composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers, backdropOf(simulation.script, info));
+        pictures[side] = composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers,
+                                    backdropOf(simulation.script, info));
     }
     writePng(path, putSideBySide(pictures[kLeft], pictures[kRight]));
 }
@@ -59,8 +63,9 @@ void showFrame(Session& session, const XrFrameEndInfo& info, const State& state)
         session.log_events.clear();
         return;
     }
-    const bool has_picture =
-        simulation.script.writes_pictures && simulation.script.frames.contains(simulation.frames_shown) && info.layerCount > 0;
+    const bool has_picture = simulation.script.writes_pictures &&
+                             simulation.script.frames.contains(simulation.frames_shown) &&
+                             info.layerCount > 0;
     FrameRecord record = recordOf(session, info, state);
     if (has_picture) { record.picture = namePicture(simulation.frames_shown); }
     ++simulation.frames_shown;

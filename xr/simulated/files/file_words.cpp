@@ -16,7 +16,9 @@ std::optional<double> parseNumber(std::string_view word) {
     if (word.starts_with('+') && !word.starts_with("+-")) { word.remove_prefix(1); }
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) { return std::nullopt; }
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
+        return std::nullopt;
+    }
     return value;
 }
 

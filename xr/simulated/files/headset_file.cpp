@@ -43,16 +43,20 @@ std::string putInWords(const toml::node& node) {
 // A table that names itself in messages.
 class Table {
 public:
-    Table(const toml::table& values, std::string file, std::string prefix, std::initializer_list<std::string_view> known)
+    Table(const toml::table& values, std::string file, std::string prefix,
+          std::initializer_list<std::string_view> known)
         : values_(values), file_(std::move(file)), prefix_(std::move(prefix)) {
         std::vector<std::string> seen;
         for (const auto& [key, node] : values) {
             std::string word(key.str());
             std::ranges::replace(word, '-', '_');
             if (std::ranges::find(known, word) == known.end()) {
-                fail(node, prefix_, shown(key.str()), " is not a key of a headset, must be ", listWords(known));
+                fail(node, prefix_, shown(key.str()), " is not a key of a headset, must be ",
+                     listWords(known));
             }
-            if (std::ranges::find(seen, word) != seen.end()) { fail(node, prefix_, word, " is set twice, must be set once"); }
+            if (std::ranges::find(seen, word) != seen.end()) {
+                fail(node, prefix_, word, " is set twice, must be set once");
+            }
             seen.push_back(word);
         }
     }
@@ -74,19 +78,25 @@ public:
         }
         return nullptr;
     }
-    [[nodiscard]] double number(std::string_view key, double least, double most) const { return numberOf(require(key), key, least, most); }
-    [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, double least, double most) const {
+    [[nodiscard]] double number(std::string_view key, double least, double most) const {
+        return numberOf(require(key), key, least, most);
+    }
+    [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, double least,
+                                  double most) const {
         const std::optional<double> value = node.value<double>();
         // Written so that NaN is refused, too.
         if (!value || !(*value >= least && *value <= most)) {
-            fail(node, prefix_, key, " is ", putInWords(node), ", must be a number from ", least, " to ", most);
+            fail(node, prefix_, key, " is ", putInWords(node), ", must be a number from ", least, " to ",
+                 most);
         }
         return *value;
     }
     [[nodiscard]] std::string text(std::string_view key) const {
         const toml::node& node = require(key);
         const std::optional<std::string> value = node.value<std::string>();
-        if (!value || value->empty()) { fail(node, prefix_, key, value ? " is empty, must be a text" : " must be a text"); }
+        if (!value || value->empty()) {
+            fail(node, prefix_, key, value ? " is empty, must be a text" : " must be a text");
+        }
         return *value;
     }
     template <typename... Parts>
@@ -108,9 +118,11 @@ std::array<std::uint32_t, 2> sizeOf(const Table& table, std::string_view key = "
     };
     const std::size_t cross = std::min(text.find('x'), text.size());
     const std::string_view all = text;
-    const std::array<std::uint32_t, 2> size_px{side(all.substr(0, cross)), side(all.substr(std::min(cross + 1, all.size())))};
+    const std::array<std::uint32_t, 2> size_px{side(all.substr(0, cross)),
+                                               side(all.substr(std::min(cross + 1, all.size())))};
     if (size_px[0] == 0 || size_px[1] == 0) {
-        table.fail(table.require(key), table.prefix(), key, " is ", shown(text), ", must be WxH with 1 to 16384 per side");
+        table.fail(table.require(key), table.prefix(), key, " is ", shown(text),
+                   ", must be WxH with 1 to 16384 per side");
     }
     return size_px;
 }
@@ -120,7 +132,9 @@ std::array<double, 2> lensCentreOf(const Table& table, const HeadsetAngles& angl
     const toml::node* node = table.find("lens_centre");
     if (node == nullptr) { return {}; }
     const toml::array* both = node->as_array();
-    if (both == nullptr || both->size() != 2) { table.fail(*node, table.prefix(), "lens_centre must be two angles, [right, up]"); }
+    if (both == nullptr || both->size() != 2) {
+        table.fail(*node, table.prefix(), "lens_centre must be two angles, [right, up]");
+    }
     const auto within = [&](std::size_t i, double least_rad, double most_rad) {
         return radians(table.numberOf(*both->get(i), "lens_centre", degrees(least_rad), degrees(most_rad)));
     };
@@ -135,10 +149,13 @@ struct Lens {
 Lens lensOf(const Table& root, std::string_view side) {
     const toml::node& node = root.require(side);
     if (!node.is_table()) { root.fail(node, side, " must be a table"); }
-    const Table table(*node.as_table(), root.file(), std::string(side) + ".", {"left", "right", "up", "down", "lens_centre"});
+    const Table table(*node.as_table(), root.file(), std::string(side) + ".",
+                      {"left", "right", "up", "down", "lens_centre"});
     const auto angle = [&](std::string_view key) { return radians(table.number(key, -85.0, 85.0)); };
     const HeadsetAngles angles{angle("left"), angle("right"), angle("up"), angle("down")};
-    if (angles.left_rad >= angles.right_rad) { table.fail(node, side, ".left must be less than ", side, ".right"); }
+    if (angles.left_rad >= angles.right_rad) {
+        table.fail(node, side, ".left must be less than ", side, ".right");
+    }
     if (angles.down_rad >= angles.up_rad) { table.fail(node, side, ".down must be less than ", side, ".up"); }
     return {angles, lensCentreOf(table, angles)};
 }
@@ -155,12 +172,17 @@ HeadsetInset insetOf(const Table& root, const toml::node& node) {
 }  // namespace
 
 HeadsetFile parseHeadset(const std::string& text, const std::string& file) {
-    if (const auto found = findUnreadableToml(text)) { failAt(file, static_cast<std::size_t>(found->line), found->problem); }
+    if (const auto found = findUnreadableToml(text)) {
+        failAt(file, static_cast<std::size_t>(found->line), found->problem);
+    }
     toml::table root;
     try {
         root = toml::parse(text, file);
-    } catch (const toml::parse_error& error) { failAt(file, error.source().begin.line, error.description(), ", must be valid TOML"); }
-    const Table table(root, file, "", {"name", "source", "size", "canting_deg", "eye_distance_m", "left", "right", "inset"});
+    } catch (const toml::parse_error& error) {
+        failAt(file, error.source().begin.line, error.description(), ", must be valid TOML");
+    }
+    const Table table(root, file, "",
+                      {"name", "source", "size", "canting_deg", "eye_distance_m", "left", "right", "inset"});
     HeadsetFile headset;
     headset.name = table.text("name");
     headset.source = table.text("source");

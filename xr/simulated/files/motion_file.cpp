@@ -65,7 +65,9 @@ Layout readHeader(const std::vector<std::string_view>& fields) {
 
 // As a row is that a recorder was stopped in.
 bool isUnfinished(const std::vector<std::string_view>& fields, bool has_break) {
-    const auto isBlank = [](std::string_view field) { return field.find_first_not_of(kBlank) == std::string_view::npos; };
+    const auto isBlank = [](std::string_view field) {
+        return field.find_first_not_of(kBlank) == std::string_view::npos;
+    };
     const auto isNumber = [](std::string_view field) { return parseNumber(field).has_value(); };
     if (fields.size() != kColumns) { return fields.size() < kColumns; }
     return std::all_of(fields.begin() + 1, fields.end(), isBlank) ||
@@ -99,14 +101,20 @@ void readPose(const Line& line, bool w_first, MotionSample& sample) {
     for (std::size_t i = 1; i < kColumns; ++i) {
         const std::optional<double> value = parseNumber(line.fields[i]);
         const char* name = w_first && i >= 4 ? kNames[i == 4 ? 7 : i - 1] : kNames[i];
-        if (!value) { line.fail(name, " is ", line.fields[i].empty() ? "empty" : shown(line.fields[i]), ", must be a finite number"); }
+        if (!value) {
+            line.fail(name, " is ", line.fields[i].empty() ? "empty" : shown(line.fields[i]),
+                      ", must be a finite number");
+        }
         values[i] = *value;
     }
     sample.position_m = {values[1], values[2], values[3]};
     std::array<double, 4>& q = sample.orientation_xyzw;
-    q = w_first ? std::array{values[5], values[6], values[7], values[4]} : std::array{values[4], values[5], values[6], values[7]};
+    q = w_first ? std::array{values[5], values[6], values[7], values[4]}
+                : std::array{values[4], values[5], values[6], values[7]};
     const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
-    if (!(std::abs(length - 1.0) <= 0.05)) { line.fail("the orientation's length is ", length, ", must be 1"); }
+    if (!(std::abs(length - 1.0) <= 0.05)) {
+        line.fail("the orientation's length is ", length, ", must be 1");
+    }
     for (double& part : q) { part /= length; }
 }
 
@@ -120,7 +128,9 @@ MotionFile parseMotion(std::string_view text, const std::string& file) {
     Time first;
     bool header_possible = true;
     const auto readRow = [&](const Line& line) {
-        if (line.fields.size() != kColumns) { line.fail(line.fields.size(), " columns, must be 8: ", kExpected); }
+        if (line.fields.size() != kColumns) {
+            line.fail(line.fields.size(), " columns, must be 8: ", kExpected);
+        }
         const std::optional<Time> time = parseTime(line.fields[0]);
         // A header has names in place of the first two numbers; otherwise it is a line with a mistake.
         if (std::exchange(header_possible, false) && !time && !parseNumber(line.fields[1])) {
@@ -128,7 +138,8 @@ MotionFile parseMotion(std::string_view text, const std::string& file) {
             return;
         }
         if (!time) {
-            line.fail("time is ", line.fields[0].empty() ? "empty" : shown(line.fields[0]), ", must be a finite number of at most 4e18");
+            line.fail("time is ", line.fields[0].empty() ? "empty" : shown(line.fields[0]),
+                      ", must be a finite number of at most 4e18");
         }
         if (samples.empty()) {
             first = *time;
@@ -157,7 +168,9 @@ MotionFile parseMotion(std::string_view text, const std::string& file) {
             motion.note = std::string(error.what()) + "; the last row, cut off, is left out";
         }
     }
-    if (samples.empty()) { throw Error(file + ": holds no poses, must be lines of " + std::string(kExpected)); }
+    if (samples.empty()) {
+        throw Error(file + ": holds no poses, must be lines of " + std::string(kExpected));
+    }
     return motion;
 }
 

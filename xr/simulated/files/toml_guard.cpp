@@ -75,7 +75,8 @@ std::optional<UnreadableToml> findUnreadableToml(std::string_view text) {
         }
         dots = kBetweenKeys.find(letter) != std::string_view::npos ? 0 : dots + (letter == '.');
         if (dots > kMostParts) {
-            return UnreadableToml{line, "a key of more than " + std::to_string(kMostParts) + " parts, must be a [table] and a key"};
+            return UnreadableToml{line, "a key of more than " + std::to_string(kMostParts) +
+                                            " parts, must be a [table] and a key"};
         }
         if (comment) { continue; }
         if (quote != '\0') {
@@ -91,9 +92,13 @@ std::optional<UnreadableToml> findUnreadableToml(std::string_view text) {
         }
         comment = letter == '#';
         if (letter == '"' || letter == '\'') {
-            if (!place.beginsText()) { return UnreadableToml{line, "quotes within a word, must be around it"}; }
+            if (!place.beginsText()) {
+                return UnreadableToml{line, "quotes within a word, must be around it"};
+            }
             const std::string_view three = text.substr(i, 3);
-            if (three == "\"\"\"" || three == "'''") { return UnreadableToml{line, "a text over several lines, must be on one"}; }
+            if (three == "\"\"\"" || three == "'''") {
+                return UnreadableToml{line, "a text over several lines, must be on one"};
+            }
             quote = letter;
         }
         place.pass(letter);

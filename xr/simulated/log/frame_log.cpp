@@ -22,7 +22,9 @@ Json jsonOf(const Pose& pose) {
     return {{"position", {p.x, p.y, p.z}}, {"orientation", {q.x, q.y, q.z, q.w}}};
 }
 
-Json jsonOf(const Fov& fov) { return {{"left", fov.left_rad}, {"right", fov.right_rad}, {"up", fov.up_rad}, {"down", fov.down_rad}}; }
+Json jsonOf(const Fov& fov) {
+    return {{"left", fov.left_rad}, {"right", fov.right_rad}, {"up", fov.up_rad}, {"down", fov.down_rad}};
+}
 
 Json jsonOf(const LoggedView& view) {
     Json json;
@@ -45,7 +47,10 @@ Json jsonOf(const LoggedView& view) {
 }
 
 Json jsonOf(const LoggedLayer& layer) {
-    Json json{{"type", layer.type}, {"flags", layer.flags}, {"space", layer.space}, {"stage_from_space", jsonOf(layer.stage_from_space)}};
+    Json json{{"type", layer.type},
+              {"flags", layer.flags},
+              {"space", layer.space},
+              {"stage_from_space", jsonOf(layer.stage_from_space)}};
     if (layer.pose) { json["pose"] = jsonOf(*layer.pose); }
     if (layer.size_m) { json["size"] = {layer.size_m->x, layer.size_m->y}; }
     for (const auto& [name, value] : layer.numbers) { json[name] = value; }
@@ -70,7 +75,8 @@ std::string makeFrameLine(const FrameRecord& record) {
               {"head", jsonOf(record.stage_from_head)}};
     json["eyes"] = Json::array();
     for (const LoggedEye& eye : record.eyes) {
-        Json& logged = json["eyes"].emplace_back(Json{{"pose", jsonOf(eye.stage_from_eye)}, {"fov", jsonOf(eye.fov)}});
+        Json& logged =
+            json["eyes"].emplace_back(Json{{"pose", jsonOf(eye.stage_from_eye)}, {"fov", jsonOf(eye.fov)}});
         if (eye.inset) { logged["inset"] = jsonOf(*eye.inset); }
     }
     json["layers"] = Json::array();
@@ -92,13 +98,18 @@ std::string makeBetweenLine(const BetweenRecord& record) {
 }
 
 FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), file_(createFile(path), &std::fclose) {
-    if (file_ == nullptr) { throw std::runtime_error(path_.string() + ": cannot be made (" + std::strerror(errno) + ")"); }
+    if (file_ == nullptr) {
+        throw std::runtime_error(path_.string() + ": cannot be made (" + std::strerror(errno) + ")");
+    }
 }
 
 void FrameLog::write(const std::string& line) {
     const std::string ended = line + '\n';
-    const bool is_written = std::fwrite(ended.data(), 1, ended.size(), file_.get()) == ended.size() && std::fflush(file_.get()) == 0;
-    if (!is_written) { throw std::runtime_error(path_.string() + ": cannot be written (" + std::strerror(errno) + ")"); }
+    const bool is_written = std::fwrite(ended.data(), 1, ended.size(), file_.get()) == ended.size() &&
+                            std::fflush(file_.get()) == 0;
+    if (!is_written) {
+        throw std::runtime_error(path_.string() + ": cannot be written (" + std::strerror(errno) + ")");
+    }
 }
 
 }  // namespace simulated

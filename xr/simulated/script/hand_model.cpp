@@ -14,10 +14,11 @@ struct Finger {
     double radius_m;
 };
 
-constexpr std::array<Finger, 4> kFingers{{{{-0.020, 0.0, -0.030}, {-0.027, 0.0, -0.090}, {0.040, 0.025, 0.020}, 0.009},
-                                          {{-0.004, 0.0, -0.030}, {-0.004, 0.0, -0.094}, {0.045, 0.028, 0.021}, 0.009},
-                                          {{0.011, 0.0, -0.030}, {0.017, 0.0, -0.088}, {0.041, 0.026, 0.020}, 0.008},
-                                          {{0.022, 0.0, -0.030}, {0.035, 0.0, -0.078}, {0.032, 0.020, 0.018}, 0.007}}};
+constexpr std::array<Finger, 4> kFingers{
+    {{{-0.020, 0.0, -0.030}, {-0.027, 0.0, -0.090}, {0.040, 0.025, 0.020}, 0.009},
+     {{-0.004, 0.0, -0.030}, {-0.004, 0.0, -0.094}, {0.045, 0.028, 0.021}, 0.009},
+     {{0.011, 0.0, -0.030}, {0.017, 0.0, -0.088}, {0.041, 0.026, 0.020}, 0.008},
+     {{0.022, 0.0, -0.030}, {0.035, 0.0, -0.078}, {0.032, 0.020, 0.018}, 0.007}}};
 constexpr std::array<glm::dvec3, 4> kThumb{
     {{-0.025, -0.010, -0.025}, {-0.045, -0.015, -0.055}, {-0.055, -0.017, -0.085}, {-0.060, -0.018, -0.110}}};
 constexpr glm::dvec3 kPalm(0.0, 0.0, -0.060);
@@ -32,11 +33,14 @@ Pose gripFromWrist(Side side) {
     return {orientation, glm::dvec3(mirror * kPalmBesideGrip_m, 0, 0) - orientation * kPalm};
 }
 
-glm::dvec3 mirrored(const glm::dvec3& place, Side side) { return {side == kLeft ? -place.x : place.x, place.y, place.z}; }
+glm::dvec3 mirrored(const glm::dvec3& place, Side side) {
+    return {side == kLeft ? -place.x : place.x, place.y, place.z};
+}
 
 }  // namespace
 
-std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl, double others_curl) {
+std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl,
+                                                  double others_curl) {
     const Pose stage_from_wrist = compose(stage_from_grip, gripFromWrist(side));
     std::array<HandJoint, kHandJoints> joints;
     std::size_t next = 0;

@@ -16,7 +16,7 @@ inline constexpr std::size_t kHandJoints = 26;
 
 // Curls go from 0, straight, to 1, closed: one for the index finger, one for the other three; the thumb
 // stays.
-[[nodiscard]] std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl,
-                                                                double others_curl);
+[[nodiscard]] std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip,
+                                                                double index_curl, double others_curl);
 
 }  // namespace simulated

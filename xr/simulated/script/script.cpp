@@ -40,7 +40,9 @@ void setPress(ControllerState& state, const Script::Hand::Press& press) {
     if (press.touch_only) { return; }
     if (!is_gesture) { state.inputs[press.input + "/click"] = 1.0; }
     if (is_gesture || kind == InputKind::kAnalog) { state.inputs[press.input + "/value"] = 1.0; }
-    if (kind == InputKind::kAnalog || kind == InputKind::kStick) { state.inputs[press.input + "/force"] = 1.0; }
+    if (kind == InputKind::kAnalog || kind == InputKind::kStick) {
+        state.inputs[press.input + "/force"] = 1.0;
+    }
 }
 
 ControllerState findController(const Script::Hand& hand, double time_s) {
@@ -49,7 +51,9 @@ ControllerState findController(const Script::Hand& hand, double time_s) {
     state.stage_from_grip = hand.stage_from_grip.at(time_s);
     state.stage_from_aim = compose(state.stage_from_grip, hand.grip_from_aim);
     if (!state.tracked) { return state; }
-    for (const auto& [name, track] : hand.axes) { setAxis(state, name, *kindOfInput(name), track.at(time_s)); }
+    for (const auto& [name, track] : hand.axes) {
+        setAxis(state, name, *kindOfInput(name), track.at(time_s));
+    }
     for (const Script::Hand::Press& press : hand.presses) {
         if (press.from_s <= time_s && time_s < press.to_s) { setPress(state, press); }
     }
@@ -71,7 +75,8 @@ double ControllerState::input(std::string_view identifier_and_component) const {
 }
 
 const char* nameOf(ScriptEvent::Kind kind) {
-    constexpr const char* kNames[] = {"rate", "slow-images", "recentre", "lose-session", "lose-instance", "exit"};
+    constexpr const char* kNames[] = {"rate",         "slow-images",   "recentre",
+                                      "lose-session", "lose-instance", "exit"};
     static_assert(std::size(kNames) == static_cast<std::size_t>(ScriptEvent::Kind::kExit) + 1);
     return kNames[static_cast<std::size_t>(kind)];
 }
@@ -92,7 +97,8 @@ State Script::at(double time_s) const {
     state.time_s = time_s;
     state.stage_from_head = stage_from_head.at(time_s);
     for (const Side side : kSides) {
-        state.eyes[side] = {compose(state.stage_from_head, headFromEye(side, eye_distance_m, cant_rad[side])), fovs[side].at(time_s)};
+        state.eyes[side] = {compose(state.stage_from_head, headFromEye(side, eye_distance_m, cant_rad[side])),
+                            fovs[side].at(time_s)};
         state.controllers[side] = findController(hands[side], time_s);
     }
     state.head_turn_known = head_turn_known.at(time_s);
@@ -147,12 +153,14 @@ glm::uvec2 Script::contextSizePx() const { return inset.context_px.value_or((siz
 glm::uvec2 Script::insetSizePx() const {
     if (inset.size_px) { return *inset.size_px; }
     const auto extentOf = [](const Fov& fov) {
-        return glm::dvec2(std::tan(fov.right_rad) - std::tan(fov.left_rad), std::tan(fov.up_rad) - std::tan(fov.down_rad));
+        return glm::dvec2(std::tan(fov.right_rad) - std::tan(fov.left_rad),
+                          std::tan(fov.up_rad) - std::tan(fov.down_rad));
     };
     glm::dvec2 share(0.0);
     for (const Side side : kSides) {
         const Fov& whole = fovs[side].initial();
-        share = glm::max(share, extentOf(makeInset(whole, lens_centres_rad[side], inset.half_angle_rad)) / extentOf(whole));
+        share = glm::max(share, extentOf(makeInset(whole, lens_centres_rad[side], inset.half_angle_rad)) /
+                                    extentOf(whole));
     }
     return glm::uvec2(glm::ceil(share * glm::dvec2(size_px) - 1e-9));
 }

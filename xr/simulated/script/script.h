@@ -71,8 +71,12 @@ struct State {
     std::array<ControllerState, 3> others;
     bool gaze_is_good = true;  // else it is not to be relied on
     // By InputDevice.
-    [[nodiscard]] ControllerState& device(std::size_t index) { return index < 2 ? controllers[index] : others[index - 2]; }
-    [[nodiscard]] const ControllerState& device(std::size_t index) const { return index < 2 ? controllers[index] : others[index - 2]; }
+    [[nodiscard]] ControllerState& device(std::size_t index) {
+        return index < 2 ? controllers[index] : others[index - 2];
+    }
+    [[nodiscard]] const ControllerState& device(std::size_t index) const {
+        return index < 2 ? controllers[index] : others[index - 2];
+    }
     bool should_render = true;
     bool worn = true;     // else the session stops, and is IDLE until the headset is put on again
     bool visible = true;  // else the session is at most SYNCHRONIZED
@@ -105,7 +109,9 @@ struct GpuLoad {
     double amount = 0.0;
 
     [[nodiscard]] double ms(double period_ms, double megapixels) const {
-        return amount * (unit == Unit::kShareOfPeriod ? period_ms : unit == Unit::kMsPerMegapixel ? megapixels : 1.0);
+        return amount * (unit == Unit::kShareOfPeriod    ? period_ms
+                         : unit == Unit::kMsPerMegapixel ? megapixels
+                                                         : 1.0);
     }
 };
 
@@ -115,7 +121,9 @@ struct FrameChoice {
     std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
     std::uint64_t every = 1;
 
-    [[nodiscard]] bool contains(std::uint64_t frame) const { return frame >= first && frame <= last && (frame - first) % every == 0; }
+    [[nodiscard]] bool contains(std::uint64_t frame) const {
+        return frame >= first && frame <= last && (frame - first) % every == 0;
+    }
 };
 
 // A foveated inset (XR_VARJO_quad_views): a small picture around the gaze, over a coarser one of the eye's
@@ -211,7 +219,8 @@ struct Script {
     GazeScript gaze;
     std::array<Hand, 2> hands;
     std::array<Steps<Fov>, 2> fovs;
-    Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true}, head_turn_known{true}, head_place_known{true};
+    Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true},
+        head_turn_known{true}, head_place_known{true};
     Steps<GpuLoad> gpu_load;
     std::vector<ScriptEvent> events;  // by time
 };

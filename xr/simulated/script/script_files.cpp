@@ -25,9 +25,11 @@ auto readWith(const auto& parse, const auto& text, const std::string& name) {
 
 }  // namespace
 
-std::string readText(const fs::path& path, const std::string& place, const char* expected, std::size_t most_bytes) {
+std::string readText(const fs::path& path, const std::string& place, const char* expected,
+                     std::size_t most_bytes) {
     const auto refuse = [&](const std::string& reason) {
-        throw ScriptError(fmt::format("{}{}: cannot be read ({}), must be {}", place, path.string(), reason, expected));
+        throw ScriptError(
+            fmt::format("{}{}: cannot be read ({}), must be {}", place, path.string(), reason, expected));
     };
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -40,13 +42,18 @@ std::string readText(const fs::path& path, const std::string& place, const char*
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > most_bytes) { refuse(fmt::format("longer than {} MiB", most_bytes >> 20)); }
-    if (text.starts_with("version https://git-lfs.github.com/spec/")) { refuse("a Git LFS pointer, to be fetched with `git lfs pull`"); }
+    if (text.starts_with("version https://git-lfs.github.com/spec/")) {
+        refuse("a Git LFS pointer, to be fetched with `git lfs pull`");
+    }
     return text;
 }
 
-files::HeadsetFile readHeadset(const std::string& text, const std::string& name) { return readWith(files::parseHeadset, text, name); }
+files::HeadsetFile readHeadset(const std::string& text, const std::string& name) {
+    return readWith(files::parseHeadset, text, name);
+}
 
-Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes, std::vector<std::string>& notes) {
+Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes,
+                          std::vector<std::string>& notes) {
     Track<Pose> track;
     const files::MotionFile motion = readWith(files::parseMotion, text, name);
     if (!motion.note.empty()) { notes.push_back(motion.note); }
@@ -54,8 +61,8 @@ Track<Pose> readHeadTrack(std::string_view text, const std::string& name, Motion
         const auto& [x, y, z] = sample.position_m;
         const auto& [qx, qy, qz, qw] = sample.orientation_xyzw;
         // Unity's axes: a reflection in z mirrors the axis and reverses the rotation.
-        const Pose pose =
-            axes == MotionAxes::kOpenXr ? Pose{glm::dquat(qw, qx, qy, qz), {x, y, z}} : Pose{glm::dquat(qw, -qx, -qy, qz), {x, y, -z}};
+        const Pose pose = axes == MotionAxes::kOpenXr ? Pose{glm::dquat(qw, qx, qy, qz), {x, y, z}}
+                                                      : Pose{glm::dquat(qw, -qx, -qy, qz), {x, y, -z}};
         track.add(sample.time_s, pose);
     }
     return track;

@@ -14,7 +14,9 @@ Pose GazeScript::headFromGaze(double time_s) const {
     return {glm::angleAxis(turn.x, glm::dvec3(0, 1, 0)) * glm::angleAxis(turn.y, glm::dvec3(1, 0, 0)), {}};
 }
 
-GazeTracking GazeScript::trackedAt(double time_s) const { return tracker == EyeTracking::kOn ? tracked.at(time_s) : GazeTracking::kOff; }
+GazeTracking GazeScript::trackedAt(double time_s) const {
+    return tracker == EyeTracking::kOn ? tracked.at(time_s) : GazeTracking::kOff;
+}
 
 void Parser::parseEyeTracking(Words& words) {
     script_.gaze.tracker = std::array{EyeTracking::kOn, EyeTracking::kOff, EyeTracking::kRefused}.at(

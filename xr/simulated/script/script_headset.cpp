@@ -33,11 +33,15 @@ void Parser::parseIrregular(Words& words) {
     script_.irregularity = 0.01 * words.takeNumber("how much periods differ, in percent", 0.0, 90.0);
 }
 
-void Parser::parsePeriod(Words& words) { script_.stretches_period = words.takeChoice("the stated period", {"steady", "stretched"}) == 1; }
+void Parser::parsePeriod(Words& words) {
+    script_.stretches_period = words.takeChoice("the stated period", {"steady", "stretched"}) == 1;
+}
 
 void Parser::parseSize(Words& words) { script_.size_px = takeSize(words); }
 
-void Parser::parseIpd(Words& words) { script_.eye_distance_m = words.takeNumber("the eye distance in metres", 0.0, 1.0); }
+void Parser::parseIpd(Words& words) {
+    script_.eye_distance_m = words.takeNumber("the eye distance in metres", 0.0, 1.0);
+}
 
 void Parser::parseEye(Words& words) {
     const Side side = words.takeSide();
@@ -52,28 +56,35 @@ void Parser::parseEye(Words& words) {
 }
 
 void Parser::parseHeadsetLine(Words& words) {
-    for (const char* set_by_it : {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant", "inset"}) {
-        if (seen_.contains(set_by_it)) { words.fail("headset sets {}, too, must stand before it", set_by_it); }
+    for (const char* set_by_it :
+         {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant", "inset"}) {
+        if (seen_.contains(set_by_it)) {
+            words.fail("headset sets {}, too, must stand before it", set_by_it);
+        }
     }
     requireFirst(words, "headset");
     const fs::path path = folder_ / words.takeText("the headset's file");
-    const files::HeadsetFile headset = readHeadset(readText(path, words.place() + ": ", "a TOML file of a headset"), path.string());
+    const files::HeadsetFile headset =
+        readHeadset(readText(path, words.place() + ": ", "a TOML file of a headset"), path.string());
     script_.system_name = headset.name;
     script_.size_px = {headset.size_px[0], headset.size_px[1]};
     script_.eye_distance_m = headset.eye_distance_m;
     script_.cant_rad = {headset.canting_rad, headset.canting_rad};
     if (headset.inset) {
-        script_.inset = {headset.inset->half_angle_rad, sizeOf(headset.inset->size_px), sizeOf(headset.inset->context_size_px)};
+        script_.inset = {headset.inset->half_angle_rad, sizeOf(headset.inset->size_px),
+                         sizeOf(headset.inset->context_size_px)};
     }
     for (const Side side : kSides) {
         const auto& [left_rad, right_rad, up_rad, down_rad] = headset.angles[side];
         script_.fovs[side].setInitial({left_rad, right_rad, up_rad, down_rad});
-        script_.lens_centres_rad[side] = {headset.lens_centres_rad[side][0], headset.lens_centres_rad[side][1]};
+        script_.lens_centres_rad[side] = {headset.lens_centres_rad[side][0],
+                                          headset.lens_centres_rad[side][1]};
     }
 }
 
 void Parser::parseInset(Words& words) {
-    script_.inset.half_angle_rad = glm::radians(words.takeNumber("half of the inset's angle in degrees", 1.0, 85.0));
+    script_.inset.half_angle_rad =
+        glm::radians(words.takeNumber("half of the inset's angle in degrees", 1.0, 85.0));
     if (words.takeIf("size")) { script_.inset.size_px = takeSize(words); }
     if (words.takeIf("context")) { script_.inset.context_px = takeSize(words); }
 }
@@ -81,7 +92,8 @@ void Parser::parseInset(Words& words) {
 void Parser::parseBlendModes(Words& words) {
     script_.blend_modes.clear();
     do {
-        const auto mode = static_cast<Script::BlendMode>(words.takeChoice("a blend mode", {"opaque", "additive", "alpha-blend"}));
+        const auto mode = static_cast<Script::BlendMode>(
+            words.takeChoice("a blend mode", {"opaque", "additive", "alpha-blend"}));
         if (std::ranges::find(script_.blend_modes, mode) != script_.blend_modes.end()) {
             words.fail("a blend mode stands there twice, must be named once");
         }

@@ -27,39 +27,40 @@ Script Parser::parse(std::string_view text) {
 
 void Parser::parseLine(Words& words) {
     constexpr bool kOnce = true;
-    static const std::map<std::string, Command, std::less<>> kCommands{{"at", {&Parser::parseAt}},
-                                                                       {"aim", {&Parser::parseAim}},
-                                                                       {"axis", {&Parser::parseAxis}},
-                                                                       {"blend-modes", {&Parser::parseBlendModes, kOnce}},
-                                                                       {"controller", {&Parser::parseController}},
-                                                                       {"extension", {&Parser::parseExtension}},
-                                                                       {"eye", {&Parser::parseEye}},
-                                                                       {"eye-tracking", {&Parser::parseEyeTracking, kOnce}},
-                                                                       {"frames", {&Parser::parseFrames, kOnce}},
-                                                                       {"gaze", {&Parser::parseGaze}},
-                                                                       {"head", {&Parser::parseHead}},
-                                                                       {"head-motion", {&Parser::parseHeadMotionLine, kOnce}},
-                                                                       {"headset", {&Parser::parseHeadsetLine}},
-                                                                       {"images", {&Parser::parseImages, kOnce}},
-                                                                       {"inset", {&Parser::parseInset, kOnce}},
-                                                                       {"ipd", {&Parser::parseIpd, kOnce}},
-                                                                       {"irregular", {&Parser::parseIrregular, kOnce}},
-                                                                       {"local", {&Parser::parseLocal, kOnce}},
-                                                                       {"no-headset-for", {&Parser::parseNoHeadset}},
-                                                                       {"period", {&Parser::parsePeriod, kOnce}},
-                                                                       {"plugged", {&Parser::parsePlugged, kOnce}},
-                                                                       {"press", {&Parser::parsePress}},
-                                                                       {"profile", {&Parser::parseProfile, kOnce}},
-                                                                       {"rate", {&Parser::parseRate, kOnce}},
-                                                                       {"refuse-depth", {&Parser::parseRefusedDepth, kOnce}},
-                                                                       {"passthrough", {&Parser::parsePassthrough, kOnce}},
-                                                                       {"room-colour", {&Parser::parseRoomColour, kOnce}},
-                                                                       {"size", {&Parser::parseSize, kOnce}},
-                                                                       {"stage", {&Parser::parseStage, kOnce}},
-                                                                       {"state-changes", {&Parser::parseStateChanges, kOnce}},
-                                                                       {"touch", {&Parser::parseTouch}},
-                                                                       {"visibility-mask", {&Parser::parseMask, kOnce}},
-                                                                       {"vulkan-additions", {&Parser::parseVulkanAdditions, kOnce}}};
+    static const std::map<std::string, Command, std::less<>> kCommands{
+        {"at", {&Parser::parseAt}},
+        {"aim", {&Parser::parseAim}},
+        {"axis", {&Parser::parseAxis}},
+        {"blend-modes", {&Parser::parseBlendModes, kOnce}},
+        {"controller", {&Parser::parseController}},
+        {"extension", {&Parser::parseExtension}},
+        {"eye", {&Parser::parseEye}},
+        {"eye-tracking", {&Parser::parseEyeTracking, kOnce}},
+        {"frames", {&Parser::parseFrames, kOnce}},
+        {"gaze", {&Parser::parseGaze}},
+        {"head", {&Parser::parseHead}},
+        {"head-motion", {&Parser::parseHeadMotionLine, kOnce}},
+        {"headset", {&Parser::parseHeadsetLine}},
+        {"images", {&Parser::parseImages, kOnce}},
+        {"inset", {&Parser::parseInset, kOnce}},
+        {"ipd", {&Parser::parseIpd, kOnce}},
+        {"irregular", {&Parser::parseIrregular, kOnce}},
+        {"local", {&Parser::parseLocal, kOnce}},
+        {"no-headset-for", {&Parser::parseNoHeadset}},
+        {"period", {&Parser::parsePeriod, kOnce}},
+        {"plugged", {&Parser::parsePlugged, kOnce}},
+        {"press", {&Parser::parsePress}},
+        {"profile", {&Parser::parseProfile, kOnce}},
+        {"rate", {&Parser::parseRate, kOnce}},
+        {"refuse-depth", {&Parser::parseRefusedDepth, kOnce}},
+        {"passthrough", {&Parser::parsePassthrough, kOnce}},
+        {"room-colour", {&Parser::parseRoomColour, kOnce}},
+        {"size", {&Parser::parseSize, kOnce}},
+        {"stage", {&Parser::parseStage, kOnce}},
+        {"state-changes", {&Parser::parseStateChanges, kOnce}},
+        {"touch", {&Parser::parseTouch}},
+        {"visibility-mask", {&Parser::parseMask, kOnce}},
+        {"vulkan-additions", {&Parser::parseVulkanAdditions, kOnce}}};
     const std::string command = words.takeText("the command");
     const auto found = kCommands.find(command);
     if (found == kCommands.end()) {
@@ -75,11 +76,15 @@ void Parser::parseLine(Words& words) {
 
 void Parser::requireFirst(const Words& words, const std::string& what) {
     const auto [earlier, is_first] = seen_.emplace(what, line_);
-    if (!is_first) { words.fail("{} is set again, first on line {}, must be set once", what, earlier->second); }
+    if (!is_first) {
+        words.fail("{} is set again, first on line {}, must be set once", what, earlier->second);
+    }
 }
 
 Script Script::parse(std::string_view text, const std::string& name) { return Parser(name).parse(text); }
 
-Script Script::load(const std::filesystem::path& path) { return parse(readText(path, "", "a script"), path.string()); }
+Script Script::load(const std::filesystem::path& path) {
+    return parse(readText(path, "", "a script"), path.string());
+}
 
 }  // namespace simulated

@@ -14,12 +14,16 @@ inline constexpr double kLeastRate = 1.0, kMostRate = 1000.0;
 
 template <typename Value>
 void addKey(const Words& words, Track<Value>& track, double time_s, const Value& value) {
-    if (!track.add(time_s, value)) { words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime()); }
+    if (!track.add(time_s, value)) {
+        words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime());
+    }
 }
 
 template <typename Value>
 void addStep(const Words& words, Steps<Value>& steps, double time_s, const Value& value) {
-    if (!steps.add(time_s, value)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
+    if (!steps.add(time_s, value)) {
+        words.fail("the time is {}, must be after the one of the same change before", time_s);
+    }
 }
 
 class Parser {

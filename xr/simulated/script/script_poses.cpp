@@ -36,7 +36,9 @@ Pose Parser::parsePose(Words& words, Pose pose) {
         is_given = true;
     } else if (words.takeIf("look")) {
         const glm::dvec3 way = words.takePosition() - pose.position;
-        if (glm::length(way) < 1e-6) { words.fail("the point to look at is where it looks from, must be another"); }
+        if (glm::length(way) < 1e-6) {
+            words.fail("the point to look at is where it looks from, must be another");
+        }
         // Straight up and down have no heading: straight ahead is taken.
         const double level = std::hypot(way.x, way.z);
         const double yaw = level < 1e-9 ? 0.0 : std::atan2(-way.x, -way.z);
@@ -44,7 +46,9 @@ Pose Parser::parsePose(Words& words, Pose pose) {
         is_given = true;
     }
     if (!is_given) {
-        words.fail("the pose is missing, must be position X Y Z, or rotation X Y Z W, turn YAW PITCH or look X Y Z, or both");
+        words.fail(
+            "the pose is missing, must be position X Y Z, or rotation X Y Z W, turn YAW PITCH or look X Y Z, "
+            "or both");
     }
     return pose;
 }
@@ -56,23 +60,31 @@ void Parser::addPose(Words& words, Track<Pose>& track, const Pose& at_rest) {
 }
 
 void Parser::parseHead(Words& words) {
-    if (head_motion_ && !head_.empty()) { words.fail("the head has a recorded motion, at most one head line can say where from"); }
+    if (head_motion_ && !head_.empty()) {
+        words.fail("the head has a recorded motion, at most one head line can say where from");
+    }
     addPose(words, head_, Script().stage_from_head.at(0.0));
     head_lines_.push_back(words.place());
 }
 
 void Parser::parseHeadMotionLine(Words& words) {
-    if (head_lines_.size() > 1) { words.fail("the head has keys on more than one line, at most one can say where the motion starts"); }
+    if (head_lines_.size() > 1) {
+        words.fail("the head has keys on more than one line, at most one can say where the motion starts");
+    }
     const fs::path path = folder_ / words.takeText("the motion's file");
     MotionAxes axes = MotionAxes::kOpenXr;
-    if (words.takeIf("axes") && words.takeChoice("the axes", {"openxr", "unity"}) == 1) { axes = MotionAxes::kUnity; }
+    if (words.takeIf("axes") && words.takeChoice("the axes", {"openxr", "unity"}) == 1) {
+        axes = MotionAxes::kUnity;
+    }
     if (words.takeIf("start")) { motion_start_s_ = words.takeTime("the time at which the motion starts"); }
     if (words.takeIf("skip")) { motion_skip_s_ = words.takeNumber("the seconds to skip", 0.0, 1e6); }
     words.requireEnd();
-    const std::string text = readText(path, words.place() + ": ", "a CSV file of head motion", kMostRecordingBytes);
+    const std::string text =
+        readText(path, words.place() + ": ", "a CSV file of head motion", kMostRecordingBytes);
     head_motion_ = readHeadTrack(text, path.string(), axes, script_.notes);
     if (motion_skip_s_ > head_motion_->lastTime()) {
-        words.fail("the seconds to skip are {}, must be at most {}, the recording's length", motion_skip_s_, head_motion_->lastTime());
+        words.fail("the seconds to skip are {}, must be at most {}, the recording's length", motion_skip_s_,
+                   head_motion_->lastTime());
     }
 }
 
@@ -97,10 +109,12 @@ void Parser::finishPoses() {
     const Pose start_from_recording = inverse(makeLevel(head_motion_->at(motion_skip_s_)));
     const Pose stage_from_recording = compose(stage_from_start, start_from_recording);
     script_.stage_from_head = Track<Pose>();
-    script_.stage_from_head.add(motion_start_s_, compose(stage_from_recording, head_motion_->at(motion_skip_s_)));
+    script_.stage_from_head.add(motion_start_s_,
+                                compose(stage_from_recording, head_motion_->at(motion_skip_s_)));
     for (const auto& [time_s, pose] : head_motion_->keys()) {
         if (time_s <= motion_skip_s_) { continue; }
-        script_.stage_from_head.add(motion_start_s_ + time_s - motion_skip_s_, compose(stage_from_recording, pose));
+        script_.stage_from_head.add(motion_start_s_ + time_s - motion_skip_s_,
+                                    compose(stage_from_recording, pose));
     }
 }
 

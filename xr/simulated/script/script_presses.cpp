@@ -32,8 +32,10 @@ void Parser::parseAxis(Words& words) {
     const std::string input = takeInputName(words, hand);
     const InputKind kind = *kindOfInput(input);
     if (kind == InputKind::kButton) {
-        words.fail("{} has no axis, must be trigger, squeeze, select, pinch_ext, aim_activate_ext, grasp_ext, thumbstick or trackpad",
-                   input);
+        words.fail(
+            "{} has no axis, must be trigger, squeeze, select, pinch_ext, aim_activate_ext, grasp_ext, "
+            "thumbstick or trackpad",
+            input);
     }
     const double time_s = words.takeTime();
     glm::dvec2 value(0.0);

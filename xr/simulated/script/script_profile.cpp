@@ -35,9 +35,13 @@ void checkInputs(const Script& script, const Profile& profile) {
             const auto isOfLater = [&, &moved = input](const auto& change) {
                 return hasInput(*findHandProfile(change.second), side, moved);
             };
-            if (hasInput(profile, side, input) || std::ranges::any_of(script.later_profiles.changes(), isOfLater)) { continue; }
+            if (hasInput(profile, side, input) ||
+                std::ranges::any_of(script.later_profiles.changes(), isOfLater)) {
+                continue;
+            }
             failAt(place, "the {} hand of {} has no {}, must be one of: {}", side == kLeft ? "left" : "right",
-                   shown(profile.path.substr(std::string_view("/interaction_profiles/").size())), input, inputsOf(profile, side));
+                   shown(profile.path.substr(std::string_view("/interaction_profiles/").size())), input,
+                   inputsOf(profile, side));
         }
     }
 }

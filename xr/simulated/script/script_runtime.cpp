@@ -11,7 +11,8 @@ namespace simulated {
 void Parser::parseImages(Words& words) {
     script_.images = static_cast<std::uint32_t>(words.takeCount("the number of images", 1, 16));
     if (words.isAtEnd()) { return; }
-    constexpr std::array kOrders{Script::ImageOrder::kInTurn, Script::ImageOrder::kReversed, Script::ImageOrder::kShuffled};
+    constexpr std::array kOrders{Script::ImageOrder::kInTurn, Script::ImageOrder::kReversed,
+                                 Script::ImageOrder::kShuffled};
     script_.image_order = kOrders.at(words.takeChoice("the order", {"in-turn", "reversed", "shuffled"}));
 }
 
@@ -21,13 +22,18 @@ void Parser::parseStateChanges(Words& words) {
 
 void Parser::parseExtension(Words& words) {
     const std::string name = words.takeText("the extension's name");
-    if (std::ranges::none_of(kExtensions, [&](const Extension& extension) { return extension.name == name; })) {
+    if (std::ranges::none_of(kExtensions,
+                             [&](const Extension& extension) { return extension.name == name; })) {
         std::string known;
-        for (const Extension& extension : kExtensions) { known += (known.empty() ? "" : ", ") + std::string(extension.name); }
+        for (const Extension& extension : kExtensions) {
+            known += (known.empty() ? "" : ", ") + std::string(extension.name);
+        }
         words.fail("{} is no extension of this runtime, must be one of: {}", shown(name), known);
     }
     (void)words.takeChoice("what to do with it", {"off"});
-    if (!script_.extensions_off.insert(name).second) { words.fail("{} is off already, must be named once", shown(name)); }
+    if (!script_.extensions_off.insert(name).second) {
+        words.fail("{} is off already, must be named once", shown(name));
+    }
 }
 
 std::string Parser::takeProfileName(Words& words) {
@@ -40,7 +46,9 @@ std::string Parser::takeProfileName(Words& words) {
 
 void Parser::parseProfile(Words& words) { script_.profile = takeProfileName(words); }
 
-void Parser::parsePlugged(Words& words) { script_.plugged = words.takeOnOff("whether the headset is plugged in"); }
+void Parser::parsePlugged(Words& words) {
+    script_.plugged = words.takeOnOff("whether the headset is plugged in");
+}
 
 void Parser::parseVulkanAdditions(Words& words) {
     script_.adds_vulkan_features = words.takeOnOff("whether the runtime asks for Vulkan features of its own");
@@ -76,7 +84,9 @@ void Parser::parseFrames(Words& words) {
         script_.frames.every = words.takeCount("how many frames apart", 1, kMost);
         is_given = true;
     }
-    if (!is_given) { words.fail("the frames are missing, must be all, none, every N, or from A to B [every N]"); }
+    if (!is_given) {
+        words.fail("the frames are missing, must be all, none, every N, or from A to B [every N]");
+    }
 }
 
 }  // namespace simulated

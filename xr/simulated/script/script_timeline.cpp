@@ -36,10 +36,13 @@ void Parser::parseAt(Words& words) {
         words.fail("the time is {}, must not be before the `at` before, at {}", time_s, *last_at_s_);
     }
     last_at_s_ = time_s;
-    const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
+    const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) {
+        script_.events.push_back({time_s, kind, count});
+    };
     switch (words.takeChoice(
-        "what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit", "eye", "controller",
-                         "worn", "head", "recentre", "present", "rate", "gpu-load", "profile", "gaze"})) {
+        "what happens",
+        {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit", "eye",
+         "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "profile", "gaze"})) {
         case 0:
             return addStep(words, script_.should_render, time_s, words.takeOnOff("whether to render"));
         case 1:
@@ -47,8 +50,8 @@ void Parser::parseAt(Words& words) {
         case 2:
             return addStep(words, script_.focused, time_s, words.takeOnOff("whether it has the focus"));
         case 3:
-            return addEvent(ScriptEvent::Kind::kSlowImages,
-                            static_cast<std::uint32_t>(words.takeCount("the number of slow images", 1, 1000000)));
+            return addEvent(ScriptEvent::Kind::kSlowImages, static_cast<std::uint32_t>(words.takeCount(
+                                                                "the number of slow images", 1, 1000000)));
         case 4:
             return addEvent(ScriptEvent::Kind::kLoseSession);
         case 5:
@@ -62,7 +65,8 @@ void Parser::parseAt(Words& words) {
         }
         case 8: {
             const Side side = words.takeSide();
-            return addStep(words, script_.hands[side].tracked, time_s, words.takeOnOff("whether it is tracked"));
+            return addStep(words, script_.hands[side].tracked, time_s,
+                           words.takeOnOff("whether it is tracked"));
         }
         case 9:
             return addStep(words, script_.worn, time_s, words.takeOnOff("whether it is worn"));
@@ -74,9 +78,11 @@ void Parser::parseAt(Words& words) {
         case 11:
             return addRecentring(script_, time_s);
         case 12:
-            return addStep(words, script_.present, time_s, words.takeOnOff("whether somebody wears the headset"));
+            return addStep(words, script_.present, time_s,
+                           words.takeOnOff("whether somebody wears the headset"));
         case 13:
-            script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.takeNumber(kRateMeaning, kLeastRate, kMostRate)});
+            script_.events.push_back(
+                {time_s, ScriptEvent::Kind::kRate, 1, words.takeNumber(kRateMeaning, kLeastRate, kMostRate)});
             return;
         case 14:
             return addStep(words, script_.gpu_load, time_s, parseLoad(words));

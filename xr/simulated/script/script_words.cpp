@@ -45,7 +45,9 @@ double Words::takeNumber(std::string_view meaning, double least, double most) {
     if (isAtEnd()) { fail("{} is missing, must be a number from {} to {}", meaning, least, most); }
     const std::string& word = words_[next_++];
     const std::optional<double> value = parseNumber(word);
-    if (!value || *value < least || *value > most) { fail("{} is {}, must be a number from {} to {}", meaning, shown(word), least, most); }
+    if (!value || *value < least || *value > most) {
+        fail("{} is {}, must be a number from {} to {}", meaning, shown(word), least, most);
+    }
     return *value;
 }
 
@@ -76,10 +78,14 @@ glm::dvec3 Words::takePosition() {
 
 glm::dquat Words::takeRotation() {
     std::array<double, 4> parts{};  // x, y, z, w
-    for (std::size_t i = 0; i < parts.size(); ++i) { parts[i] = takeNumber(fmt::format("rotation {}", "xyzw"[i]), -1e6, 1e6); }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i] = takeNumber(fmt::format("rotation {}", "xyzw"[i]), -1e6, 1e6);
+    }
     const glm::dquat quaternion(parts[3], parts[0], parts[1], parts[2]);
     const double length = glm::length(quaternion);
-    if (length < 1e-3) { fail("the rotation's length is {}, must be 1 (or at least 0.001 to be made so)", length); }
+    if (length < 1e-3) {
+        fail("the rotation's length is {}, must be 1 (or at least 0.001 to be made so)", length);
+    }
     return quaternion / length;
 }
 
@@ -89,7 +95,9 @@ Fov Words::takeAngles() {
     const double right = takeNumber("the angle to the right in degrees", -kWidest, kWidest);
     const double up = takeNumber("the angle up in degrees", -kWidest, kWidest);
     const double down = takeNumber("the angle down in degrees", -kWidest, kWidest);
-    if (left >= right) { fail("the angles are {} to the left and {} to the right, left must be less", left, right); }
+    if (left >= right) {
+        fail("the angles are {} to the left and {} to the right, left must be less", left, right);
+    }
     if (down >= up) { fail("the angles are {} up and {} down, down must be less", up, down); }
     return {glm::radians(left), glm::radians(right), glm::radians(up), glm::radians(down)};
 }

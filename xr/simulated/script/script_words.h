@@ -42,7 +42,9 @@ public:
     std::size_t takeChoice(std::string_view meaning, std::initializer_list<std::string_view> choices);
     bool takeOnOff(std::string_view meaning) { return takeChoice(meaning, {"on", "off"}) == 0; }
     Side takeSide() { return takeChoice("the side", {"left", "right"}) == 0 ? kLeft : kRight; }
-    double takeTime(std::string_view meaning = "the time in seconds") { return takeNumber(meaning, -1e6, 1e6); }
+    double takeTime(std::string_view meaning = "the time in seconds") {
+        return takeNumber(meaning, -1e6, 1e6);
+    }
     glm::dvec3 takePosition();
     glm::dquat takeRotation();
     // left right up down in degrees, within 85 degrees.

@@ -31,7 +31,8 @@ public:
     }
 
     [[nodiscard]] Value at(double time_s) const {
-        const auto after = std::upper_bound(keys_.begin(), keys_.end(), time_s, [](double t, const auto& key) { return t < key.first; });
+        const auto after = std::upper_bound(keys_.begin(), keys_.end(), time_s,
+                                            [](double t, const auto& key) { return t < key.first; });
         if (after == keys_.begin()) { return keys_.front().second; }
         if (after == keys_.end()) { return keys_.back().second; }
         const auto& [from_s, from] = *std::prev(after);
@@ -60,8 +61,8 @@ public:
     }
 
     [[nodiscard]] Value at(double time_s) const {
-        const auto after =
-            std::upper_bound(changes_.begin(), changes_.end(), time_s, [](double t, const auto& change) { return t < change.first; });
+        const auto after = std::upper_bound(changes_.begin(), changes_.end(), time_s,
+                                            [](double t, const auto& change) { return t < change.first; });
         return after == changes_.begin() ? initial_ : std::prev(after)->second;
     }
 

@@ -16,7 +16,8 @@ GovernedSettings allOf(Quality quality) {
 
 // The share of the work that an error bound takes in these tests.
 double workOf(const GovernedSettings& settings) {
-    return settings.error_bound_db > 0.0 ? 0.5 * std::exp2((settings.error_bound_db - 30.0) / 4.3) : settings.budget;
+    return settings.error_bound_db > 0.0 ? 0.5 * std::exp2((settings.error_bound_db - 30.0) / 4.3)
+                                         : settings.budget;
 }
 
 // `ms` is the time of all the work at full resolution, of which the share `fixed` does not depend on the
@@ -66,7 +67,8 @@ struct Run {
             const double gpu_ms = cost(machine.ms(time_s), machine.fixed, settings, frames.size());
             const double lost_periods = machine.lost ? machine.lost(time_s, gpu_ms) : 0.0;
             governor.measure({gpu_ms, period_ms, false, lost_periods, workOf(settings)});
-            frames.push_back({time_s, gpu_ms, period_ms, settings, governor.isBeaten(), governor.sentence(), lost_periods});
+            frames.push_back({time_s, gpu_ms, period_ms, settings, governor.isBeaten(), governor.sentence(),
+                              lost_periods});
             time_s += 1e-3 * period_ms * (1.0 + lost_periods);
         }
     }
@@ -75,7 +77,9 @@ struct Run {
     [[nodiscard]] std::vector<std::size_t> changes(double from_s = 0.0) const {
         std::vector<std::size_t> found;
         for (std::size_t i = 1; i < frames.size(); ++i) {
-            if (frames[i].time_s >= from_s && frames[i].settings != frames[i - 1].settings) { found.push_back(i); }
+            if (frames[i].time_s >= from_s && frames[i].settings != frames[i - 1].settings) {
+                found.push_back(i);
+            }
         }
         return found;
     }
@@ -83,7 +87,9 @@ struct Run {
     template <typename Condition>
     [[nodiscard]] std::size_t longest(std::size_t first, const Condition& are) const {
         std::size_t row = 0, most = 0;
-        for (std::size_t i = first; i < frames.size(); ++i) { most = std::max(most, row = are(frames[i]) ? row + 1 : 0); }
+        for (std::size_t i = first; i < frames.size(); ++i) {
+            most = std::max(most, row = are(frames[i]) ? row + 1 : 0);
+        }
         return most;
     }
     [[nodiscard]] std::size_t longestOver(std::size_t first = 0) const {
@@ -92,10 +98,16 @@ struct Run {
     [[nodiscard]] std::size_t longestLate() const {
         return longest(0, [](const Frame& frame) { return frame.lost_periods > 0.0; });
     }
-    [[nodiscard]] const Frame& at(double time_s) const { return *std::ranges::lower_bound(frames, time_s, {}, &Frame::time_s); }
+    [[nodiscard]] const Frame& at(double time_s) const {
+        return *std::ranges::lower_bound(frames, time_s, {}, &Frame::time_s);
+    }
     [[nodiscard]] const Frame& last() const { return frames.back(); }
-    [[nodiscard]] bool says(const std::string& part, double time_s) const { return at(time_s).sentence.find(part) != std::string::npos; }
-    [[nodiscard]] bool saysAtLast(const std::string& part) const { return last().sentence.find(part) != std::string::npos; }
+    [[nodiscard]] bool says(const std::string& part, double time_s) const {
+        return at(time_s).sentence.find(part) != std::string::npos;
+    }
+    [[nodiscard]] bool saysAtLast(const std::string& part) const {
+        return last().sentence.find(part) != std::string::npos;
+    }
 };
 
 // `upheavals_s` are the times at which the load changes. 60 frames after each the settings have settled, and
@@ -106,8 +118,9 @@ void checkCalm(const Run& run, const std::vector<double>& upheavals_s, std::size
     std::size_t taken_back = 0;
     for (const std::size_t i : run.changes()) {
         const double time_s = run.frames[i].time_s;
-        const bool settling =
-            std::ranges::any_of(upheavals_s, [&](double from_s) { return time_s >= from_s && time_s <= from_s + 60 * 1e-3 * kPeriodMs; });
+        const bool settling = std::ranges::any_of(upheavals_s, [&](double from_s) {
+            return time_s >= from_s && time_s <= from_s + 60 * 1e-3 * kPeriodMs;
+        });
         CAPTURE(time_s);
         taken_back += !settling && time_s - last_s < 1.0 - 1e-9;
         CHECK(taken_back <= most_taken_back);
@@ -119,7 +132,9 @@ Over constantly(double value) {
     return [=](double) { return value; };
 }
 
-TEST_CASE("off, the settings are the wearer's, whatever they cost, and so they are where the device has no times, which a message says") {
+TEST_CASE(
+    "off, the settings are the wearer's, whatever they cost, and so they are where the device has no times, "
+    "which a message says") {
     const Run off({.quality = Quality::kOff, .seconds = 5.0, .ms = constantly(40.0), .fixed = 1.0});
     CHECK(off.changes().empty());
     CHECK(off.last().settings == kAll);
@@ -129,8 +144,14 @@ TEST_CASE("off, the settings are the wearer's, whatever they cost, and so they a
     CHECK(without.saysAtLast("does not say"));
 }
 
-TEST_CASE("where everything fits the budget rises from the wearer's to all work, a step a second, and stays there") {
-    const Run run({.quality = Quality::kBalanced, .seconds = 30.0, .ms = constantly(6.0), .mode = Mode::kPredicted, .wish = kWish});
+TEST_CASE(
+    "where everything fits the budget rises from the wearer's to all work, a step a second, and stays "
+    "there") {
+    const Run run({.quality = Quality::kBalanced,
+                   .seconds = 30.0,
+                   .ms = constantly(6.0),
+                   .mode = Mode::kPredicted,
+                   .wish = kWish});
     CHECK(run.frames[30].settings == kWish);
     checkCalm(run, {});
     CHECK(run.at(15.0).settings == kAll);
@@ -141,7 +162,9 @@ TEST_CASE("where everything fits the budget rises from the wearer's to all work,
     CHECK(bound.last().sentence.starts_with("temporal at 100 %, errors within 30 dB: "));
 }
 
-TEST_CASE("of a load that does not change it finds what fits within 60 frames, settles, and gives up no more than it must") {
+TEST_CASE(
+    "of a load that does not change it finds what fits within 60 frames, settles, and gives up no more than "
+    "it must") {
     for (const Quality quality : {Quality::kSharp, Quality::kBalanced, Quality::kFast}) {
         for (const double fixed : {0.05, 0.2, 0.4}) {
             for (const double ms : {9.5, 12.0, 20.0, 30.0, 50.0}) {
@@ -154,7 +177,9 @@ TEST_CASE("of a load that does not change it finds what fits within 60 frames, s
                 if (quality != Quality::kFast || fixed != 0.2 || ms < 30.0) { continue; }
                 // A tenth of the period is kept free.
                 std::vector<double> last;
-                for (std::size_t i = run.frames.size() - 300; i < run.frames.size(); ++i) { last.push_back(run.frames[i].gpu_ms); }
+                for (std::size_t i = run.frames.size() - 300; i < run.frames.size(); ++i) {
+                    last.push_back(run.frames[i].gpu_ms);
+                }
                 std::ranges::nth_element(last, last.begin() + 150);
                 CHECK(last[150] <= 0.9 * kPeriodMs * 1.01);
                 CHECK(last[150] >= 0.6 * kPeriodMs);
@@ -163,19 +188,24 @@ TEST_CASE("of a load that does not change it finds what fits within 60 frames, s
     }
 }
 
-TEST_CASE("a load that comes and goes: resolution falls only where the budget is at its least, and both rise again when there is room") {
+TEST_CASE(
+    "a load that comes and goes: resolution falls only where the budget is at its least, and both rise again "
+    "when there is room") {
     const Over ms = [](double t) { return t < 12.0 ? 9.0 : t < 27.0 ? 24.0 : 9.0; };
-    for (const auto& [quality, least] :
-         {std::pair(Quality::kSharp, 0.2), std::pair(Quality::kBalanced, 0.1), std::pair(Quality::kFast, 0.05)}) {
+    for (const auto& [quality, least] : {std::pair(Quality::kSharp, 0.2), std::pair(Quality::kBalanced, 0.1),
+                                         std::pair(Quality::kFast, 0.05)}) {
         CAPTURE(least);
-        const Run run({.quality = quality, .seconds = 60.0, .ms = ms, .fixed = 0.4, .mode = Mode::kPredicted});
+        const Run run(
+            {.quality = quality, .seconds = 60.0, .ms = ms, .fixed = 0.4, .mode = Mode::kPredicted});
         CHECK(run.longestOver() <= 10);
         checkCalm(run, {12.0});
         CHECK(run.at(11.9).settings == kAll);
         CHECK(run.says(" took ", 13.0));
         CHECK(run.at(20.0).settings.budget < 0.25);
         for (const Run::Frame& frame : run.frames) {
-            if (frame.settings.resolution_scale < 1.0) { CHECK(frame.settings.budget == doctest::Approx(least)); }
+            if (frame.settings.resolution_scale < 1.0) {
+                CHECK(frame.settings.budget == doctest::Approx(least));
+            }
         }
         CHECK(run.last().settings == kAll);
         CHECK(run.changes(50.0).empty());
@@ -191,7 +221,9 @@ TEST_CASE("a load that grows takes three steps in a row, the third of which is n
     CHECK(run.frames[run.changes()[2]].settings.resolution_scale >= 0.5 - 1e-9);
 }
 
-TEST_CASE("while the head stands still nothing is left to mend: the budget does not rise, and frames fit once it moves") {
+TEST_CASE(
+    "while the head stands still nothing is left to mend: the budget does not rise, and frames fit once it "
+    "moves") {
     Governor governor;
     governor.wish(Quality::kBalanced, Mode::kPredicted, kWish);
     for (std::size_t frame = 0; frame < 1800; ++frame) {
@@ -206,7 +238,8 @@ TEST_CASE("while the head stands still nothing is left to mend: the budget does 
     CHECK(governor.settings().budget > kWish.budget);
 }
 
-TEST_CASE("another scene is measured anew, and another wish begins anew: what was lost before it is no measure") {
+TEST_CASE(
+    "another scene is measured anew, and another wish begins anew: what was lost before it is no measure") {
     Governor governor;
     governor.wish(Quality::kBalanced, Mode::kPredicted, kWish);
     for (std::size_t frame = 0; frame < 900; ++frame) {
@@ -227,7 +260,9 @@ TEST_CASE("another scene is measured anew, and another wish begins anew: what wa
     CHECK(other.isBeaten());
 }
 
-TEST_CASE("of a method without a budget the resolution alone changes, never above the wearer's, and the budget of one eye alone does") {
+TEST_CASE(
+    "of a method without a budget the resolution alone changes, never above the wearer's, and the budget of "
+    "one eye alone does") {
     for (const Mode mode : {Mode::kShared, Mode::kTwoPass, Mode::kMono, Mode::kPaper, Mode::kAlternate}) {
         const Run run({.ms = constantly(20.0), .fixed = 1.0, .mode = mode, .wish = {0.22, 1.2}});
         for (const Run::Frame& frame : run.frames) {
@@ -238,7 +273,10 @@ TEST_CASE("of a method without a budget the resolution alone changes, never abov
         CHECK(scale < 1.2);
         CHECK(run.last().sentence.starts_with(fmt::format("{} at {:.0f} %: ", nameOf(mode), 100.0 * scale)));
     }
-    const Run one({.seconds = 60.0, .ms = [](double t) { return t < 20.0 ? 8.0 : 14.0; }, .fixed = 0.6, .mode = Mode::kPredicted});
+    const Run one({.seconds = 60.0,
+                   .ms = [](double t) { return t < 20.0 ? 8.0 : 14.0; },
+                   .fixed = 0.6,
+                   .mode = Mode::kPredicted});
     CHECK(one.at(19.9).settings == kAll);
     CHECK(one.longestOver() <= 10);
     CHECK(one.last().settings.budget < 0.6);
@@ -246,17 +284,19 @@ TEST_CASE("of a method without a budget the resolution alone changes, never abov
     CHECK(one.saysAtLast(" of an eye"));
 }
 
-TEST_CASE("a minute in which the load and the period change, and two in which the load swings about the limit, are calm") {
-    const Run minute({.seconds = 60.0,
-                      .ms = [](double t) { return t < 8.0    ? 7.0
-                                                  : t < 20.0 ? 16.0
-                                                  : t < 34.0 ? 7.0
-                                                  : t < 46.0 ? 13.0
-                                                             : 8.5; },
-                      .fixed = 0.75,
-                      .period_ms = [](double t) { return 1000.0 / (t < 28.0   ? 90.0
-                                                                   : t < 46.0 ? 72.0
-                                                                              : 120.0); }});
+TEST_CASE(
+    "a minute in which the load and the period change, and two in which the load swings about the limit, are "
+    "calm") {
+    const Run minute(
+        {.seconds = 60.0,
+         .ms =
+             [](double t) {
+                 return t < 8.0 ? 7.0 : t < 20.0 ? 16.0 : t < 34.0 ? 7.0 : t < 46.0 ? 13.0 : 8.5;
+             },
+         .fixed = 0.75,
+         .period_ms = [](double t) { return 1000.0 / (t < 28.0   ? 90.0
+                                                      : t < 46.0 ? 72.0
+                                                                 : 120.0); }});
     checkCalm(minute, {0.0, 8.0, 20.0, 28.0, 34.0, 46.0});
     CHECK(minute.longestOver() <= 10);
     for (const Run::Frame& frame : minute.frames) { CHECK_FALSE(frame.beaten); }
@@ -267,7 +307,9 @@ TEST_CASE("a minute in which the load and the period change, and two in which th
     CHECK(swing.changes(60.0).size() <= 8);
 }
 
-TEST_CASE("where not even the least settings fit, or meet every display but more than the best, it says so and stays with them") {
+TEST_CASE(
+    "where not even the least settings fit, or meet every display but more than the best, it says so and "
+    "stays with them") {
     const Run slow({.quality = Quality::kSharp, .ms = constantly(60.0)});
     checkCalm(slow, {0.0});
     CHECK(slow.last().beaten);
@@ -282,11 +324,15 @@ TEST_CASE("where not even the least settings fit, or meet every display but more
     CHECK(late.changes(5.0).empty());
 }
 
-TEST_CASE("displays that are missed although the device says that frames fit: others take their part, and there is less to use") {
+TEST_CASE(
+    "displays that are missed although the device says that frames fit: others take their part, and there is "
+    "less to use") {
     for (const Quality quality : {Quality::kBalanced, Quality::kFast}) {
         for (const double others_ms : {5.0, 6.0, 7.0}) {
             INFO("quality ", static_cast<int>(quality), ", others_ms ", others_ms);
-            const auto lost = [&](double t, double gpu_ms) { return lostBy(gpu_ms, t < 5.0 ? 0.0 : others_ms); };
+            const auto lost = [&](double t, double gpu_ms) {
+                return lostBy(gpu_ms, t < 5.0 ? 0.0 : others_ms);
+            };
             const Run run({.quality = quality, .seconds = 40.0, .lost = lost});
             CHECK(run.at(4.9).settings == allOf(quality));
             checkCalm(run, {5.0}, 3);
@@ -299,14 +345,18 @@ TEST_CASE("displays that are missed although the device says that frames fit: ot
         }
     }
     // When the other programs stop, the time is used again.
-    const Run run({.seconds = 60.0, .lost = [](double t, double gpu_ms) { return lostBy(gpu_ms, t > 5.0 && t < 20.0 ? 6.0 : 0.0); }});
+    const Run run({.seconds = 60.0, .lost = [](double t, double gpu_ms) {
+                       return lostBy(gpu_ms, t > 5.0 && t < 20.0 ? 6.0 : 0.0);
+                   }});
     checkCalm(run, {5.0}, 2);
     CHECK(run.longestLate() <= 10);
     CHECK(run.at(19.0).settings.resolution_scale < 1.0);
     CHECK(run.last().settings == allOf(Quality::kFast));
 }
 
-TEST_CASE("where displays are missed whatever is drawn nothing is given up for it but for a moment, and a message says so") {
+TEST_CASE(
+    "where displays are missed whatever is drawn nothing is given up for it but for a moment, and a message "
+    "says so") {
     const Run run({.seconds = 200.0, .lost = [](double, double gpu_ms) { return lostBy(gpu_ms, 12.0); }});
     CHECK(run.frames[10].settings.resolution_scale < 1.0);
     CHECK(run.frames[40].settings == allOf(Quality::kFast));
@@ -314,14 +364,16 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
     // Lower settings are tried again after a minute, and then after two.
     CHECK(run.last().settings == allOf(Quality::kFast));
     CHECK_FALSE(run.last().beaten);
-    const auto lowered =
-        std::ranges::count_if(run.frames, [&](const Run::Frame& frame) { return frame.settings != allOf(Quality::kFast); });
+    const auto lowered = std::ranges::count_if(
+        run.frames, [&](const Run::Frame& frame) { return frame.settings != allOf(Quality::kFast); });
     CHECK(lowered > 20);
     CHECK(lowered < 100);
     CHECK(run.changes(1.0).size() <= 8);  // three steps down and all the way back, twice
     // Once these misses are over, the message goes and misses count again: the next ones come from a load
     // that the device's own times do not show.
-    const auto in_turn = [](double t, double gpu_ms) { return t < 5.0 ? lostBy(gpu_ms, 12.0) : t < 7.0 ? 0.0 : lostBy(gpu_ms, 6.0); };
+    const auto in_turn = [](double t, double gpu_ms) {
+        return t < 5.0 ? lostBy(gpu_ms, 12.0) : t < 7.0 ? 0.0 : lostBy(gpu_ms, 6.0);
+    };
     const Run again({.lost = in_turn});
     CHECK(again.says("whatever is drawn", 4.9));
     CHECK_FALSE(again.says("whatever is drawn", 6.9));
@@ -331,14 +383,18 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
     // A spike just when displays begin to be missed does not make the lowest settings look better than the
     // best ones.
     std::size_t frame = 0;
-    const Run spike({.seconds = 10.0, .lost = [&](double, double) { return ++frame == 50 ? 6.0 : frame > 50 ? 1.0 : 0.0; }});
+    const Run spike({.seconds = 10.0, .lost = [&](double, double) {
+                         return ++frame == 50 ? 6.0 : frame > 50 ? 1.0 : 0.0;
+                     }});
     CHECK(spike.last().settings.resolution_scale == 1.0);
     CHECK(spike.saysAtLast("whatever is drawn"));
 }
 
 TEST_CASE("a hitch at the least settings, which meet all displays, gives nothing back") {
     std::size_t hitch = 0;
-    const auto lost = [&](double t, double gpu_ms) { return t > 9.0 && hitch < 6 ? ++hitch, 2.0 : lostBy(2.0 * gpu_ms, 4.0); };
+    const auto lost = [&](double t, double gpu_ms) {
+        return t > 9.0 && hitch < 6 ? ++hitch, 2.0 : lostBy(2.0 * gpu_ms, 4.0);
+    };
     const Run run({.seconds = 30.0, .lost = lost});
     const double before = run.at(8.9).settings.resolution_scale;
     CHECK(before < 0.75);
@@ -359,7 +415,9 @@ TEST_CASE("frames that are slow or come late now and then, or early for each tha
     }
 }
 
-TEST_CASE("a streamed scene has as many splats as frames have time for, between what the memory holds and a least number") {
+TEST_CASE(
+    "a streamed scene has as many splats as frames have time for, between what the memory holds and a least "
+    "number") {
     // Two milliseconds, plus a microsecond for each thousand splats: 7 ms of 11.1 leave room for 5 million.
     SplatBudget budget(20'000'000);
     std::uint64_t shown = 0;
@@ -370,7 +428,9 @@ TEST_CASE("a streamed scene has as many splats as frames have time for, between 
     CHECK(2.0 + 1e-6 * static_cast<double>(shown) < 0.9 * kPeriodMs);
     CHECK(2.0 + 1e-6 * static_cast<double>(shown) > 0.5 * kPeriodMs);
     int changes = 0;
-    for (int frame = 0; frame < 4000; ++frame) { changes += budget.measure(2.0 + 1e-6 * static_cast<double>(shown), kPeriodMs, shown); }
+    for (int frame = 0; frame < 4000; ++frame) {
+        changes += budget.measure(2.0 + 1e-6 * static_cast<double>(shown), kPeriodMs, shown);
+    }
     CHECK(changes == 0);
     for (int frame = 0; frame < 4000; ++frame) { budget.measure(100.0, kPeriodMs, budget.splats()); }
     CHECK(budget.splats() == SplatBudget::kLeast);

@@ -44,21 +44,25 @@ struct Minute {
 
     // With the governor, or with fixed knobs; then frames are late if they leave less than a tenth of the
     // period.
-    Minute(const Device& device, const Place& place, const Change& change, const std::optional<Knobs>& fixed = {}) {
+    Minute(const Device& device, const Place& place, const Change& change,
+           const std::optional<Knobs>& fixed = {}) {
         Governor governor;
         std::mt19937 random(1), thief(2);
         std::optional<GovernedSettings> before;
         int frames = 0;
         for (double time_s = 0.0; time_s < 60.0; ++frames) {
             governor.wish(Quality::kBalanced, Mode::kTemporal, {1.0, 1.0});
-            const GovernedSettings now = fixed ? GovernedSettings{1.0, fixed->scale, fixed->bound_db} : governor.settings();
+            const GovernedSettings now =
+                fixed ? GovernedSettings{1.0, fixed->scale, fixed->bound_db} : governor.settings();
             const double motion = change.motion(time_s), scale = now.resolution_scale;
-            const double work = workAt(place, now.error_bound_db, motion), warp_error = warpErrorAt(place, now.error_bound_db, motion);
+            const double work = workAt(place, now.error_bound_db, motion),
+                         warp_error = warpErrorAt(place, now.error_bound_db, motion);
             double ms = msAt(device, scale, work) * change.cost(time_s) * drawBetween(random, 0.95, 1.05);
             if (drawUnit(thief) < change.stolen) { ms += 100.0; }
             const double lost = fixed ? 0.0 : std::max(std::ceil(ms / kPeriodMs) - 1.0, 0.0);
             if (!fixed) {
-                governor.measure({ms, kPeriodMs, false, lost, work, warp_error * drawBetween(random, 0.9, 1.1),
+                governor.measure({ms, kPeriodMs, false, lost, work,
+                                  warp_error * drawBetween(random, 0.9, 1.1),
                                   lossAt(place, scale / 2.0) - lossAt(place, scale)});
             }
             changes_at_last += before && *before != now && time_s > 30.0;
@@ -73,23 +77,28 @@ struct Minute {
     }
 };
 
-constexpr std::array<Device, 3> kDevices{
-    {{"pixels", 20.0, 0.05, 0.2, 0.0, 0.75}, {"splats", 14.0, 0.3, 0.02, 0.65, 0.03}, {"both", 24.0, 0.15, 0.1, 0.25, 0.5}}};
+constexpr std::array<Device, 3> kDevices{{{"pixels", 20.0, 0.05, 0.2, 0.0, 0.75},
+                                          {"splats", 14.0, 0.3, 0.02, 0.65, 0.03},
+                                          {"both", 24.0, 0.15, 0.1, 0.25, 0.5}}};
 constexpr std::array<Place, 3> kPlaces{{{"smooth", 3e-5, 4.0, 3e-5, 0.8, 0.3, 0.04},
                                         {"sharp", 8e-4, 2.0, 9e-5, 0.5, 0.38, 0.075},
                                         {"between", 2e-4, 3.0, 4e-5, 0.6, 0.25, 0.06}}};
 
-TEST_CASE("it is within a tenth of the best fixed pair of knobs, with at most 2 % of frames late, whatever changes, and comes to rest") {
+TEST_CASE(
+    "it is within a tenth of the best fixed pair of knobs, with at most 2 % of frames late, whatever "
+    "changes, and comes to rest") {
     const Over same = [](double) { return 1.0; };
-    const std::array<Change, 5> changes{{{"nothing", same, same},
-                                         {"the scene's cost", [](double t) { return t < 20.0 || t > 40.0 ? 1.0 : 1.25; }, same},
-                                         {"the device's clock", [](double t) { return t < 25.0 ? 1.0 : 1.2; }, same},
-                                         {"the head's motion", same, [](double t) { return std::fmod(t, 12.0) < 6.0 ? 1.0 : 0.3; }},
-                                         {"now and then a frame takes long", same, same, 0.008}}};
+    const std::array<Change, 5> changes{
+        {{"nothing", same, same},
+         {"the scene's cost", [](double t) { return t < 20.0 || t > 40.0 ? 1.0 : 1.25; }, same},
+         {"the device's clock", [](double t) { return t < 25.0 ? 1.0 : 1.2; }, same},
+         {"the head's motion", same, [](double t) { return std::fmod(t, 12.0) < 6.0 ? 1.0 : 0.3; }},
+         {"now and then a frame takes long", same, same, 0.008}}};
     for (const Device& device : kDevices) {
         for (const Place& place : kPlaces) {
             for (const Change& change : changes) {
-                INFO("waits for ", std::string(device.waits_for), ", ", std::string(place.name), ", changes: ", std::string(change.of));
+                INFO("waits for ", std::string(device.waits_for), ", ", std::string(place.name),
+                     ", changes: ", std::string(change.of));
                 const Minute governed(device, place, change);
                 double least = 1.0;
                 for (double tenths = 6.0; tenths <= 10.0; ++tenths) {

@@ -12,7 +12,9 @@ std::string vectorFont() {
     return {};
 }
 
-bool isFont(const std::string& bytes) { return looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}); }
+bool isFont(const std::string& bytes) {
+    return looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+}
 
 // A letter of three bytes in UTF-8.
 std::string utf8(unsigned letter) {
@@ -30,7 +32,9 @@ std::vector<std::string> signsOf(PanelSketch& sketch, const std::string& word) {
     for (const std::string& sign : signs) {
         CHECK(sign >= utf8(kFirstPrivate));
         CHECK(sign <= utf8(kLastPrivate));
-        const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(sign[at])) & 0x3fu; };
+        const auto byte = [&](std::size_t at) {
+            return static_cast<unsigned>(static_cast<unsigned char>(sign[at])) & 0x3fu;
+        };
         CHECK(isThere((byte(0) & 0xfu) << 12 | byte(1) << 6 | byte(2)));
     }
     return signs;
@@ -45,7 +49,8 @@ TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Gree
     REQUIRE(capital != nullptr);
     const double distance_m = std::sqrt(0.45 * 0.45 + 0.1 * 0.1 + 0.9 * 0.9);
     const double height_m = (capital->Y1 - capital->Y0) * kPanelWidthMetres / kPanelPx.x;
-    CHECK(glm::degrees(2.0 * std::atan(0.5 * kPanelWidthMetres / distance_m)) == doctest::Approx(26.0).epsilon(0.005));
+    CHECK(glm::degrees(2.0 * std::atan(0.5 * kPanelWidthMetres / distance_m)) ==
+          doctest::Approx(26.0).epsilon(0.005));
     CHECK(glm::degrees(std::atan(height_m / distance_m)) >= 0.5);
     for (const unsigned letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
         CHECK_MESSAGE(isThere(letter), letter);
@@ -57,7 +62,9 @@ TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Gree
     CHECK(these(font.FindGlyph(0x4e2d), font.FindGlyph(0xfffd)) == these(glyphOf(0x25a1), glyphOf(0x25a1)));
 }
 
-TEST_CASE("names bring their letters along, those that no font has stay boxes, and what is on the panel stays where it is") {
+TEST_CASE(
+    "names bring their letters along, those that no font has stay boxes, and what is on the panel stays "
+    "where it is") {
     const Workplace work;
     PanelSketch sketch;
     const WidgetPlaces before = sketch.draw().places;
@@ -79,7 +86,9 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     CHECK(sketch.draw().places.contains(chinese));
     CHECK(isThere(0x5d0));
     const std::vector<fs::path> further = furtherSystemFonts();
-    if (std::ranges::any_of(further, [](const fs::path& file) { return fs::exists(file) && file.filename() != "DejaVuSans.ttf"; })) {
+    if (std::ranges::any_of(further, [](const fs::path& file) {
+            return fs::exists(file) && file.filename() != "DejaVuSans.ttf";
+        })) {
         CHECK(isThere(0x68ee));
         CHECK(isThere(0x6797));
     } else {
@@ -88,7 +97,9 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     // However many glyphs there are, a device can sample the atlas.
     for (unsigned page = 0; page < 8; ++page) {
         std::string text;
-        for (unsigned letter = 2000 * page; letter < 2000 * (page + 1); ++letter) { text += utf8(0x4e00 + letter); }
+        for (unsigned letter = 2000 * page; letter < 2000 * (page + 1); ++letter) {
+            text += utf8(0x4e00 + letter);
+        }
         CHECK(sketch.bringLetters(text));
         CHECK(std::max(ImGui::GetIO().Fonts->TexWidth, ImGui::GetIO().Fonts->TexHeight) <= 4096);
         CHECK(isThere('A'));
@@ -103,7 +114,9 @@ TEST_CASE("the system says which fonts have a letter, and for no letter it says 
     for (const SystemFont& font : fonts) { CHECK(fs::exists(font.file)); }
 }
 
-TEST_CASE("Hebrew and Arabic are read from right to left, and Arabic letters are joined, before a font has formed them, too") {
+TEST_CASE(
+    "Hebrew and Arabic are read from right to left, and Arabic letters are joined, before a font has formed "
+    "them, too") {
     CHECK(asShown("plain \xc3\xa9 \xd0\x96.ply") == "plain \xc3\xa9 \xd0\x96.ply");
     // Alef, bet and gimel within a path: gimel comes first, and the path keeps its order.
     CHECK(asShown("/a/\xd7\x90\xd7\x91\xd7\x92/b.ply") == "/a/\xd7\x92\xd7\x91\xd7\x90/b.ply");
@@ -115,12 +128,16 @@ TEST_CASE("Hebrew and Arabic are read from right to left, and Arabic letters are
     CHECK(asShown("\xd7\xff\xf0\x9f").find("\xef\xbf\xbd") != std::string::npos);
 }
 
-TEST_CASE("letters that change with those beside them are formed and ordered by the font, from right to left where they are read so") {
+TEST_CASE(
+    "letters that change with those beside them are formed and ordered by the font, from right to left where "
+    "they are read so") {
     PanelSketch sketch;
     const std::string beh = "\xd8\xa8", alef = "\xd8\xa7";
     // All at once, so each glyph has one number.
-    const std::string ha = "\xe0\xa4\xb9", hi = ha + "\xe0\xa4\xbf", ksha = "\xe0\xa4\x95\xe0\xa5\x8d\xe0\xa4\xb7";
-    sketch.bringLetters(fmt::format("{0} {0}{0} {1} {1}{0} \xd8\xb3\xd9\x84\xd8\xa7\xd9\x85 {2} {3} {4}", beh, alef, ha, hi, ksha));
+    const std::string ha = "\xe0\xa4\xb9", hi = ha + "\xe0\xa4\xbf",
+                      ksha = "\xe0\xa4\x95\xe0\xa5\x8d\xe0\xa4\xb7";
+    sketch.bringLetters(fmt::format("{0} {0}{0} {1} {1}{0} \xd8\xb3\xd9\x84\xd8\xa7\xd9\x85 {2} {3} {4}", beh,
+                                    alef, ha, hi, ksha));
     const auto of = [&](const std::string& word) { return signsOf(sketch, word); };
     const auto alone = of(beh), twice = of(beh + beh);
     REQUIRE(alone.size() == 1);
@@ -141,7 +158,8 @@ TEST_CASE("letters that change with those beside them are formed and ordered by 
     CHECK(of(ksha).size() == 1);
 }
 
-TEST_CASE("a word's signs are drawn, keep their order among other letters, and are nobody's private letters") {
+TEST_CASE(
+    "a word's signs are drawn, keep their order among other letters, and are nobody's private letters") {
     PanelSketch sketch;
     const std::string shalom = "\xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d";
     const auto signs = signsOf(sketch, shalom);
@@ -153,7 +171,8 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
     CHECK(drawn.AdvanceX > 3.0f);
     const FontTexture texture = fontTexture();
     const glm::vec2 size_px(texture.size_px);
-    const glm::uvec2 from(glm::vec2(drawn.U0, drawn.V0) * size_px), to(glm::vec2(drawn.U1, drawn.V1) * size_px);
+    const glm::uvec2 from(glm::vec2(drawn.U0, drawn.V0) * size_px),
+        to(glm::vec2(drawn.U1, drawn.V1) * size_px);
     int most = 0;
     for (unsigned y = from.y; y < to.y; ++y) {
         for (unsigned x = from.x; x < to.x; ++x) { most = std::max<int>(most, texture.at({x, y})[3]); }
@@ -166,7 +185,9 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
     // However many words there are, their glyphs fit among the private letters.
     std::string many;
     for (int word = 0; word < 390; ++word) {
-        for (int i = 0; i < 40; ++i) { many += fmt::format("\xd7{}", static_cast<char>(0x90 + (word * 7 + i * i) % 27)); }
+        for (int i = 0; i < 40; ++i) {
+            many += fmt::format("\xd7{}", static_cast<char>(0x90 + (word * 7 + i * i) % 27));
+        }
         many += ' ';
     }
     CHECK(sketch.bringLetters(many));
@@ -174,7 +195,8 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
     CHECK(isThere('A'));
 }
 
-TEST_CASE_FIXTURE(AtWork, "without a font that can be used the small built-in one is, and one line says why") {
+TEST_CASE_FIXTURE(AtWork,
+                  "without a font that can be used the small built-in one is, and one line says why") {
     const std::string whole = vectorFont();
     work.write("text.ttf", "no font at all");
     work.write("short.ttf", whole.substr(0, whole.size() / 2));
@@ -196,7 +218,8 @@ TEST_CASE_FIXTURE(AtWork, "without a font that can be used the small built-in on
 TEST_CASE("a font is taken only if the tables it has lie within it") {
     const std::string whole = vectorFont();
     REQUIRE(isFont(whole));
-    for (const std::size_t bytes : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{12}, std::size_t{40}, whole.size() - 1}) {
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{12},
+                                    std::size_t{40}, whole.size() - 1}) {
         CAPTURE(bytes);
         CHECK_FALSE(isFont(whole.substr(0, bytes)));
     }

@@ -37,8 +37,9 @@ public:
         status.pictures = &font->pictures();
         ImGuiIO& io = ImGui::GetIO();
         constexpr float kNowhere = -std::numeric_limits<float>::max();
-        io.MousePos =
-            pointer != nullptr ? ImVec2(static_cast<float>(pointer->x), static_cast<float>(pointer->y)) : ImVec2(kNowhere, kNowhere);
+        io.MousePos = pointer != nullptr
+                          ? ImVec2(static_cast<float>(pointer->x), static_cast<float>(pointer->y))
+                          : ImVec2(kNowhere, kNowhere);
         io.MouseDown[0] = pressed;
         io.DeltaTime = 0.01f;
         ImGui::NewFrame();
@@ -118,7 +119,8 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
             PanelSketch sketch;
             sketch.settings.page = shown;
             const WidgetPlaces plain = sketch.draw().places;
-            sketch.status.can_reload_shaders = sketch.status.can_pass_through = sketch.status.takes_depth = true;
+            sketch.status.can_reload_shaders = sketch.status.can_pass_through = sketch.status.takes_depth =
+                true;
             sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};  // as the simulated headset has them
             found[static_cast<std::size_t>(shown)] = {plain, sketch.draw().places};
         }
@@ -128,7 +130,9 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
 }
 
 // On the page of methods, with which the panel opens if the config says panel-page = "method".
-inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) { return placeOf(name, with_all, PanelPage::kMethod); }
+inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) {
+    return placeOf(name, with_all, PanelPage::kMethod);
+}
 
 // On a moving scene's panel, which has one more tab; `plays`: while it moves.
 inline glm::dvec2 placeOfTime(const std::string& name, bool plays, PanelPage page = PanelPage::kTime) {

@@ -15,7 +15,9 @@ SUITE(panel) {
 using Page = PanelPage;
 constexpr std::array kPages{Page::kView, Page::kScenes, Page::kMethod, Page::kTime, Page::kHelp};
 
-TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 degrees high at least, and what is used most twice that") {
+TEST_CASE(
+    "on each page every widget lies on the panel, none on another, 1.5 degrees high at least, and what is "
+    "used most twice that") {
     const double half_px = 0.5 * 1.5 * kPanelPx.x / 26.0;
     for (const bool all : {false, true}) {
         PanelSketch sketch;
@@ -42,7 +44,8 @@ TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 deg
                 }
                 const ImGuiID id = hoveredAt(place, 0.0);
                 CHECK((id != 0 || name == "Up"));  // the top has nothing above it
-                const std::array large{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset", "Step back", "Pause", "Step on"};
+                const std::array large{"Sharp", "Balanced",  "Fast",  "Recentre", "Level",
+                                       "Reset", "Step back", "Pause", "Step on"};
                 const double reach_px = 0.97 * half_px * (std::ranges::count(large, name) != 0 ? 2.0 : 1.0);
                 for (const double down_px : {-reach_px, reach_px}) { CHECK(hoveredAt(place, down_px) == id); }
             }
@@ -53,7 +56,8 @@ TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 deg
 TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, buttons, sliders and pages") {
     const auto asks = [&](const char* name, auto request) { return click(name).*request; };
     using Asked = PanelRequests;
-    const std::vector<std::pair<const char*, bool Asked::*>> common{{"Save", &Asked::save}, {"Load", &Asked::load}, {"Quit", &Asked::quit}};
+    const std::vector<std::pair<const char*, bool Asked::*>> common{
+        {"Save", &Asked::save}, {"Load", &Asked::load}, {"Quit", &Asked::quit}};
     click("Method");
     CHECK(settings.page == Page::kMethod);
     CHECK(click("paper").places.contains("Centre ROI (paper)"));
@@ -73,12 +77,13 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     click("View");
     CHECK(settings.page == Page::kView);
     for (const auto& [name, request] : common) { CHECK_MESSAGE(asks(name, request), name); }
-    for (const auto& [name, request] : std::vector<std::pair<const char*, bool Asked::*>>{{"Level", &Asked::level_scene},
-                                                                                          {"Recentre", &Asked::recentre},
-                                                                                          {"Reset", &Asked::reset_scene},
-                                                                                          {"1:1", &Asked::natural_size},
-                                                                                          {"True size", &Asked::measure},
-                                                                                          {"Picture", &Asked::take_picture}}) {
+    for (const auto& [name, request] :
+         std::vector<std::pair<const char*, bool Asked::*>>{{"Level", &Asked::level_scene},
+                                                            {"Recentre", &Asked::recentre},
+                                                            {"Reset", &Asked::reset_scene},
+                                                            {"1:1", &Asked::natural_size},
+                                                            {"True size", &Asked::measure},
+                                                            {"Picture", &Asked::take_picture}}) {
         CHECK_MESSAGE(asks(name, request), name);
     }
     click("Scenes");
@@ -89,15 +94,17 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     CHECK(asks("Last shown", &Asked::last_scene));
     CHECK(asks("Next viewpoint", &Asked::viewpoint_step) == 1);
     CHECK(asks("Previous viewpoint", &Asked::viewpoint_step) == -1);
-    for (const auto& [name, request] : std::vector<std::pair<const char*, bool Asked::*>>{{"Keep this one", &Asked::keep_viewpoint},
-                                                                                          {"Tour", &Asked::tour},
-                                                                                          {"Name", &Asked::rename_viewpoint},
-                                                                                          {"Forget", &Asked::forget_viewpoint},
-                                                                                          {"Export", &Asked::share_viewpoints},
-                                                                                          {"Import", &Asked::read_viewpoints}}) {
+    for (const auto& [name, request] :
+         std::vector<std::pair<const char*, bool Asked::*>>{{"Keep this one", &Asked::keep_viewpoint},
+                                                            {"Tour", &Asked::tour},
+                                                            {"Name", &Asked::rename_viewpoint},
+                                                            {"Forget", &Asked::forget_viewpoint},
+                                                            {"Export", &Asked::share_viewpoints},
+                                                            {"Import", &Asked::read_viewpoints}}) {
         CHECK_MESSAGE(asks(name, request), name);
     }
-    CHECK(these(asks("Earlier", &Asked::viewpoint_move), asks("Later", &Asked::viewpoint_move)) == these(-1, 1));
+    CHECK(these(asks("Earlier", &Asked::viewpoint_move), asks("Later", &Asked::viewpoint_move)) ==
+          these(-1, 1));
     click("Help");
     CHECK(settings.page == Page::kHelp);
     CHECK(asks("Leave", &Asked::quit));
@@ -106,7 +113,8 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     CHECK(settings.page == Page::kView);
 }
 
-TEST_CASE_FIXTURE(PanelSketch, "what the panel asks for is written with its keys or a keyboard, in place of its page") {
+TEST_CASE_FIXTURE(PanelSketch,
+                  "what the panel asks for is written with its keys or a keyboard, in place of its page") {
     using What = TextEntry::What;
     TextEntry entry;
     status.entry = &entry;
@@ -137,7 +145,9 @@ TEST_CASE_FIXTURE(PanelSketch, "what the panel asks for is written with its keys
     CHECK(entry.text().size() == 60);
 }
 
-TEST_CASE_FIXTURE(PanelSketch, "a message is white letters on a dark plate, in two lines if it is long; beside it nothing is seen") {
+TEST_CASE_FIXTURE(
+    PanelSketch,
+    "a message is white letters on a dark plate, in two lines if it is long; beside it nothing is seen") {
     draw();
     const auto rowsWith = [](const TexelPicture& picture) {
         std::set<std::size_t> rows;
@@ -205,9 +215,9 @@ TEST_CASE_FIXTURE(PanelSketch, "the help page draws what the hands hold: no stic
     CHECK(ImGui::GetDrawData()->TotalVtxCount == touch);
 }
 
-TEST_CASE_FIXTURE(
-    PanelSketch,
-    "a comparison is asked for and ended on the pages Scenes and View; only during it is there another scene to keep in sight") {
+TEST_CASE_FIXTURE(PanelSketch,
+                  "a comparison is asked for and ended on the pages Scenes and View; only during it is there "
+                  "another scene to keep in sight") {
     settings.page = PanelPage::kScenes;
     CHECK(click("Compare").compare);
     CHECK_FALSE(click("Other").show_other);
@@ -219,7 +229,9 @@ TEST_CASE_FIXTURE(
     CHECK(click("Compare").compare);
 }
 
-TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
+TEST_CASE_FIXTURE(
+    PanelSketch,
+    "a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
     CHECK_FALSE(draw().places.contains("Time"));
     status.time = ShownTime{11, 60, 30.0, true, 0};
     click("Time");
@@ -268,7 +280,8 @@ TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps a
     CHECK_FALSE(clock.plays());
 }
 
-TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture as it is, and letters stay there") {
+TEST_CASE_FIXTURE(PanelSketch,
+                  "a picture of a scene lies in the font's texture as it is, and letters stay there") {
     ScenePicture picture{"red", "a.png", {}};
     for (std::size_t i = 0; i < std::size_t{kScenePicturePx.x} * kScenePicturePx.y; ++i) {
         picture.rgba.insert(picture.rgba.end(), {200, 10, 20, 255});
@@ -278,7 +291,9 @@ TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture 
     REQUIRE(font->pictures().contains("red"));
     const PictureCorners& corners = font->pictures().at("red");
     const FontTexture texture = fontTexture();
-    const auto inTexels = [&](const auto& at) { return glm::dvec2(at.x, at.y) * glm::dvec2(texture.size_px); };
+    const auto inTexels = [&](const auto& at) {
+        return glm::dvec2(at.x, at.y) * glm::dvec2(texture.size_px);
+    };
     const glm::dvec2 low = inTexels(corners.low), high = inTexels(corners.high);
     CHECK(glm::uvec2(glm::round(high - low)) == kScenePicturePx);
     CHECK(texture.at(glm::uvec2(0.5 * (low + high))) == std::array<unsigned char, 4>{200, 10, 20, 255});
@@ -291,10 +306,13 @@ TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture 
     later.key = "later";
     CHECK(bringLetters("", {other}));
     CHECK(bringLetters("", {later}));
-    CHECK(these(font->pictures().size(), font->pictures().contains("later"), font->pictures().contains("other")) == these(2, true, true));
+    CHECK(these(font->pictures().size(), font->pictures().contains("later"),
+                font->pictures().contains("other")) == these(2, true, true));
 }
 
-TEST_CASE("size and height are changed while their buttons are held, and what moves and what is behind is chosen by name") {
+TEST_CASE(
+    "size and height are changed while their buttons are held, and what moves and what is behind is chosen "
+    "by name") {
     PanelSketch sketch;
     const auto held = [&](const char* name) {
         const glm::dvec2 place = sketch.draw().places.at(name);
@@ -326,7 +344,8 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
     CHECK(sketch.settings.backdrop == Backdrop::kGrey);
     // A second click on the chosen quality leaves the settings as the page of methods has them.
     for (const auto& [name, quality] :
-         {std::pair("Sharp", Quality::kSharp), std::pair("Fast", Quality::kFast), std::pair("Fast", Quality::kOff)}) {
+         {std::pair("Sharp", Quality::kSharp), std::pair("Fast", Quality::kFast),
+          std::pair("Fast", Quality::kOff)}) {
         sketch.click(name);
         CHECK(sketch.settings.quality == quality);
     }
@@ -334,7 +353,9 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
 
 TEST_CASE_FIXTURE(PanelSketch, "the panel has the names and ranges of the table of options") {
     settings.page = Page::kMethod;
-    const auto isChosen = [&](const auto& row, const auto& owner, std::string_view name) { return textOf(row.field.value(owner)) == name; };
+    const auto isChosen = [&](const auto& row, const auto& owner, std::string_view name) {
+        return textOf(row.field.value(owner)) == name;
+    };
     for (const char* key : {"mode", "dominant", "depth"}) {
         const OptionRow<RunOptions>& row = *findRunRow(key);
         CHECK(row.field.choices.size() >= 2);
@@ -359,14 +380,17 @@ TEST_CASE_FIXTURE(PanelSketch, "the panel has the names and ranges of the table 
             draw(&place, true);
             draw(&place);
         }
-        return std::tuple(settings.stereo.warp.margin_px, settings.stereo.warp.budget, settings.resolution_scale);
+        return std::tuple(settings.stereo.warp.margin_px, settings.stereo.warp.budget,
+                          settings.resolution_scale);
     };
     const OptionField<ViewSettings>& scale = findViewRow("resolution-scale")->field;
     CHECK(slideAllTo(0.0) == std::tuple(0u, 0.0, *scale.least));
     CHECK(slideAllTo(kPanelPx.x) == std::tuple(128u, 1.0, *scale.most));
 }
 
-TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by page, and what cannot be read does nothing") {
+TEST_CASE(
+    "scenes are looked for by clicks: down, up, to other places, page by page, and what cannot be read does "
+    "nothing") {
     const Workplace work;
     const std::string here = work.path.string(), inner = here + "/inner", scene = here + "/a##b.ply";
     fs::create_directories(inner);
@@ -414,7 +438,9 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     unsetenv("XDG_CONFIG_HOME");
 }
 
-TEST_CASE("no folder is read while the panel is drawn: it says that it reads until a list is there, and an outdated one is not shown") {
+TEST_CASE(
+    "no folder is read while the panel is drawn: it says that it reads until a list is there, and an "
+    "outdated one is not shown") {
     const Workplace work;
     fs::create_directory(work.path / "inner");
     work.write("inner/a.ply", "x");
@@ -425,7 +451,8 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     const std::optional<SceneListWish> first = chooser.takeWish();
     REQUIRE(first.has_value());
     CHECK_FALSE(chooser.takeWish().has_value());
-    CHECK(these(chooser.isReading(), chooser.list().title, chooser.list().entries.empty()) == these(true, work.path.string(), true));
+    CHECK(these(chooser.isReading(), chooser.list().title, chooser.list().entries.empty()) ==
+          these(true, work.path.string(), true));
     const WidgetPlaces quiet = sketch.draw().places;
     const auto drawnVertices = [] { return ImGui::GetDrawData()->TotalVtxCount; };
     const int without = drawnVertices();
@@ -457,10 +484,13 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     sketch.draw();
 }
 
-TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
     const std::string longest = std::string(240, 'w') + ".ply";
-    for (const std::string& name : {std::string("\xce\xa9\xd0\x96\xc3\xa4.ply"), std::string("line\nbreak.ply"), std::string("%s%n.ply"),
-                                    std::string("\xff\xfe.ply"), longest}) {
+    for (const std::string& name :
+         {std::string("\xce\xa9\xd0\x96\xc3\xa4.ply"), std::string("line\nbreak.ply"),
+          std::string("%s%n.ply"), std::string("\xff\xfe.ply"), longest}) {
         work.write(name, "x");
     }
     PanelSketch sketch;
@@ -482,11 +512,14 @@ TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a
     }
 }
 
-TEST_CASE_FIXTURE(PanelSketch, "the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {
+TEST_CASE_FIXTURE(
+    PanelSketch,
+    "the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {
     CHECK_FALSE(draw().places.contains("Automatic"));
     status.refresh_rates = {72.0, 89.9988, 144.0};
     settings.refresh_rate = 72.0;
-    for (const auto& [name, rate] : {std::pair("90 Hz", 89.9988), std::pair("144 Hz", 144.0), std::pair("Automatic", 0.0)}) {
+    for (const auto& [name, rate] :
+         {std::pair("90 Hz", 89.9988), std::pair("144 Hz", 144.0), std::pair("Automatic", 0.0)}) {
         click(name);
         CHECK(settings.refresh_rate == rate);
     }

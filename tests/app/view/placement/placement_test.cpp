@@ -67,7 +67,8 @@ TEST_CASE_FIXTURE(AtWork, "settings of a scene lie in the user's folder, by the 
     CHECK(fileOf("a.ply", "longer") != first);
     CHECK(fileOf("elsewhere/a.ply", "one") != first);
     CHECK(viewSettingsFile((folder / "elsewhere/../a.ply").string()) == fileOf("a.ply", "longer"));
-    CHECK(viewSettingsFile((folder / "elsewhere/").string()) == viewSettingsFile((folder / "elsewhere").string()));
+    CHECK(viewSettingsFile((folder / "elsewhere/").string()) ==
+          viewSettingsFile((folder / "elsewhere").string()));
     // Long names are cut between letters: here one byte, followed by 124 letters of two bytes each.
     std::string letters = "a";
     for (int i = 0; i < 124; ++i) { letters += "\xc3\xa4"; }
@@ -83,7 +84,9 @@ TEST_CASE_FIXTURE(AtWork, "settings of a scene lie in the user's folder, by the 
     CHECK_THROWS_AS(static_cast<void>(viewSettingsFile("builtin:fence")), Error);
 }
 
-TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or their camera is, upright, metres as long as they say") {
+TEST_CASE_FIXTURE(
+    AtWork,
+    "a wearer starts where the options put the eye or their camera is, upright, metres as long as they say") {
     const std::string cameras = (work.path / "c.json").string();
     const auto startWith = [&](const std::string& options) {
         const CameraOptions camera = parse<ViewOptions>("view box.ply " + options).run.camera;
@@ -94,7 +97,8 @@ TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or thei
     checkNear(transform(start, {0, 0, 1}), {1, 2, 5});   // ahead is level
     checkNear(transform(start, {0, -1, 0}), {1, 0, 3});  // up is up
     // Looking straight down, no direction ahead is level, but the wearer still stands upright.
-    checkNear(startWith("--eye 1,2,3 --look 1,2.001,8 --up 0,0,-1").orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
+    checkNear(startWith("--eye 1,2,3 --look 1,2.001,8 --up 0,0,-1").orientation * glm::dvec3(0, -1, 0),
+              {0, 0, -1}, 1e-6);
     // A camera that looks about 37 degrees down, along (0, 0.6, 0.8), keeps its own up.
     work.write("c.json", R"([{"position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]],
                               "width": 8, "height": 8, "fx": 9, "fy": 9}])");
@@ -103,17 +107,21 @@ TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or thei
     checkNear(at_camera.orientation * glm::dvec3(0, -1, 0), {0, -0.8, 0.6}, 1e-6);
 }
 
-TEST_CASE("a scene that would be looked at from nearer than half a metre is shown larger, and no other one is") {
+TEST_CASE(
+    "a scene that would be looked at from nearer than half a metre is shown larger, and no other one is") {
     const auto growthAt = [](double distance, double metres_per_unit) {
         return growthToSee({{1, 2, 3}, {1, 2, 3 + distance}, {0, -1, 0}, 60.0}, metres_per_unit);
     };
-    CHECK(these(growthAt(0.25, 1.0), growthAt(0.25, 0.1)) == these(doctest::Approx(2.0), doctest::Approx(20.0)));
+    CHECK(these(growthAt(0.25, 1.0), growthAt(0.25, 0.1)) ==
+          these(doctest::Approx(2.0), doctest::Approx(20.0)));
     for (const double distance : {0.5, 2.0, 100.0}) { CHECK(growthAt(distance, 1.0) == 1.0); }
     CHECK(growthAt(0.25, 10.0) == 1.0);
     CHECK(growthAt(0.0, 1.0) == 1000.0);  // the limit to which hands can enlarge it
 }
 
-TEST_CASE("both hands hold what they took: points of the scene stay in them, upright or, where they may tilt it, turned any way") {
+TEST_CASE(
+    "both hands hold what they took: points of the scene stay in them, upright or, where they may tilt it, "
+    "turned any way") {
     const std::array<glm::dvec3, 2> from{glm::dvec3(-0.2, 0.4, 0.3), glm::dvec3(0.2, 0.4, 0.3)};
     const auto checkHeld = [&](const std::array<glm::dvec3, 2>& to, bool tilts) {
         const Similarity held = heldBy(kSome, from, to, tilts);
@@ -127,7 +135,8 @@ TEST_CASE("both hands hold what they took: points of the scene stay in them, upr
                            std::array{glm::dvec3(0.3, 0.4, 0.3), glm::dvec3(-0.1, 0.4, 0.1)},
                            std::array{glm::dvec3(-0.4, 0.4, 0.3), glm::dvec3(0.4, 0.4, 0.3)}, from}) {
         // The vertical stays vertical.
-        checkNear(checkHeld(to, false).orientation * glm::dvec3(0, 1, 0), kSome.orientation * glm::dvec3(0, 1, 0));
+        checkNear(checkHeld(to, false).orientation * glm::dvec3(0, 1, 0),
+                  kSome.orientation * glm::dvec3(0, 1, 0));
     }
     checkHeld({glm::dvec3(0.1, 0.1, 0.3), glm::dvec3(0.15, 0.5, 0.4)}, true);
     checkHeld({from[1], from[0]}, true);  // half a turn, too
@@ -155,12 +164,14 @@ TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
     views[0].fov = {-0.9f, 0.8f, 0.85f, -0.95f};
     views[1].fov = {-0.8f, 0.9f, std::nextafter(0.85f, 1.0f), std::nextafter(-0.95f, 0.0f)};
     const std::array<xr::EyeView, 2> alike = withoutNoise(views);
-    CHECK(these(alike[1].fov.angleUp, alike[1].fov.angleDown, alike[1].fov.angleLeft) == these(0.85f, -0.95f, -0.8f));
+    CHECK(these(alike[1].fov.angleUp, alike[1].fov.angleDown, alike[1].fov.angleLeft) ==
+          these(0.85f, -0.95f, -0.8f));
     views[1].fov.angleUp = 0.8501f;
     CHECK(withoutNoise(views)[1].fov.angleUp == 0.8501f);
 }
 
-TEST_CASE("sessions that are lost one after the other are too many after three, those lost now and then are not") {
+TEST_CASE(
+    "sessions that are lost one after the other are too many after three, those lost now and then are not") {
     Losses losses;
     Losses::Time now{};
     for (int i = 0; i < 3; ++i) { CHECK(losses.add(now += std::chrono::seconds(1))); }
@@ -170,7 +181,9 @@ TEST_CASE("sessions that are lost one after the other are too many after three, 
     CHECK(losses.count() == 1);
 }
 
-TEST_CASE("what somebody sets on the panel is kept, key by key, and is there the next time; the rest is left to the program") {
+TEST_CASE(
+    "what somebody sets on the panel is kept, key by key, and is there the next time; the rest is left to "
+    "the program") {
     const Workplace work;
     setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
     const auto parse = [](std::vector<const char*> words) {
@@ -285,14 +298,16 @@ TEST_CASE("what the panel is set to survives its file") {
     CHECK(describeChange(settings, read) == "margin = 16");
 }
 
-TEST_CASE("a config that places the scene in part, or by what is no number, is refused with its line, and so is an unknown key") {
+TEST_CASE(
+    "a config that places the scene in part, or by what is no number, is refused with its line, and so is an "
+    "unknown key") {
     using Items = std::vector<std::string>;
-    for (const auto& [key, items, place] :
-         std::vector<std::tuple<const char*, Items, const char*>>{{"scene-position", {"1", "2", "3"}, "a.toml:3"},
-                                                                  {"scene-position", {"1", "2"}, "a.toml:4: scene-position"},
-                                                                  {"units-per-metre", {"2"}, "a.toml:3"},
-                                                                  {"units-per-metre", {"nan"}, "a.toml:4: units-per-metre"},
-                                                                  {"colour", {"red"}, "a.toml:4: colour"}}) {
+    for (const auto& [key, items, place] : std::vector<std::tuple<const char*, Items, const char*>>{
+             {"scene-position", {"1", "2", "3"}, "a.toml:3"},
+             {"scene-position", {"1", "2"}, "a.toml:4: scene-position"},
+             {"units-per-metre", {"2"}, "a.toml:3"},
+             {"units-per-metre", {"nan"}, "a.toml:4: units-per-metre"},
+             {"colour", {"red"}, "a.toml:4: colour"}}) {
         const SettingsTable table{"view", "a.toml:3", {{key, {fmt::format("a.toml:4: {}", key), items}}}};
         CHECK_THROWS_WITH_AS(readViewSettings({table}, {}), doctest::Contains(place), Error);
     }

@@ -19,8 +19,8 @@ xr::HandJoints flatHand(const glm::dvec3& palm) {
     for (std::size_t finger = 0; finger < 5; ++finger) {
         const std::size_t first = finger == 0 ? 2 : 6 + 5 * (finger - 1), count = finger == 0 ? 4 : 5;
         for (std::size_t i = 0; i < count; ++i) {
-            joints[first + i].place =
-                palm + glm::dvec3(0.02 * (static_cast<double>(finger) - 2.0), 0.03 - 0.03 * static_cast<double>(i), 0.0);
+            joints[first + i].place = palm + glm::dvec3(0.02 * (static_cast<double>(finger) - 2.0),
+                                                        0.03 - 0.03 * static_cast<double>(i), 0.0);
         }
     }
     return joints;
@@ -35,17 +35,21 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
     // The palm is in the middle; each joint appears where its line of sight meets the picture.
     CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
     for (const xr::HandJoint& joint : joints) {
-        const glm::dvec3 from = transform(inverse(place.room_from_strip), eye), to = transform(inverse(place.room_from_strip), joint.place);
+        const glm::dvec3 from = transform(inverse(place.room_from_strip), eye),
+                         to = transform(inverse(place.room_from_strip), joint.place);
         const glm::dvec3 hit = from + (to - from) * (from.z / (from.z - to.z));
         const glm::dvec2 at = (glm::dvec2(hit) / place.size_m + 0.5) * glm::dvec2(kHandPicturePx);
         CHECK(alphaAt(picture, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) == 1.0);
     }
     for (const std::uint32_t border : {0u, kHandPicturePx.x - 1}) {
-        CHECK(these(alphaAt(picture, border, kHandPicturePx.y / 2), alphaAt(picture, kHandPicturePx.x / 2, border)) == these(0.0, 0.0));
+        CHECK(these(alphaAt(picture, border, kHandPicturePx.y / 2),
+                    alphaAt(picture, kHandPicturePx.x / 2, border)) == these(0.0, 0.0));
     }
 }
 
-TEST_CASE("an arc is opaque along its bends and nowhere else, has no gap between its pieces, and is red where one cannot stand") {
+TEST_CASE(
+    "an arc is opaque along its bends and nowhere else, has no gap between its pieces, and is red where one "
+    "cannot stand") {
     const glm::dvec3 eye(0.0), from(0.25, 0.35, 0.3), speed(0.3, -2.0, 6.0);
     constexpr double kSteps = kArcPieces * kPointsOfPiece;
     const auto thrown = [&](double at) {
@@ -53,21 +57,26 @@ TEST_CASE("an arc is opaque along its bends and nowhere else, has no gap between
         return from + t * speed + glm::dvec3(0.0, 4.9 * t * t, 0.0);
     };
     Arc arc;
-    for (std::size_t i = 0; i <= kArcPieces * kPointsOfPiece; ++i) { arc.points.push_back(thrown(static_cast<double>(i))); }
+    for (std::size_t i = 0; i <= kArcPieces * kPointsOfPiece; ++i) {
+        arc.points.push_back(thrown(static_cast<double>(i)));
+    }
     const ArcPicture drawn = drawArc(arc, eye, {false, true});
     double bends_m = 0.0;
     for (std::size_t piece = 0; piece < kArcPieces; ++piece) {
         REQUIRE(drawn.places[piece].has_value());
         const auto& [room_from_strip, size_m] = *drawn.places[piece];
         const auto alphaBeside = [&](double step, double aside_m) {
-            const glm::dvec3 to = transform(inverse(room_from_strip), thrown(static_cast<double>(piece * kPointsOfPiece) + step));
+            const glm::dvec3 to = transform(inverse(room_from_strip),
+                                            thrown(static_cast<double>(piece * kPointsOfPiece) + step));
             const glm::dvec3 seen_from = transform(inverse(room_from_strip), eye);
             const glm::dvec2 hit(seen_from + (to - seen_from) * (seen_from.z / (seen_from.z - to.z)));
             bends_m = std::max(bends_m, std::abs(hit.x));
             const glm::dvec2 at = ((hit + glm::dvec2(aside_m, 0.0)) / size_m + 0.5) * glm::dvec2(kArcPiecePx);
             if (at.x < 0.0 || at.x >= kArcPiecePx.x) { return 0.0; }
-            return alphaAt(drawn.picture, static_cast<std::uint32_t>(at.x) + static_cast<std::uint32_t>(piece) * kArcPiecePx.x,
-                           static_cast<std::uint32_t>(at.y));
+            return alphaAt(
+                drawn.picture,
+                static_cast<std::uint32_t>(at.x) + static_cast<std::uint32_t>(piece) * kArcPiecePx.x,
+                static_cast<std::uint32_t>(at.y));
         };
         for (double step = 0.0; step <= kPointsOfPiece; step += 0.25) {
             CHECK(alphaBeside(step, 0.0) > 0.9);
@@ -75,11 +84,14 @@ TEST_CASE("an arc is opaque along its bends and nowhere else, has no gap between
         }
     }
     CHECK(bends_m > 0.008);  // a straight strip would be off by this much
-    const auto isRed = [](std::uint32_t texel) { return (texel & 0xffu) > 128u && (texel >> 8 & 0xffu) < 64u; };
+    const auto isRed = [](std::uint32_t texel) {
+        return (texel & 0xffu) > 128u && (texel >> 8 & 0xffu) < 64u;
+    };
     CHECK(std::ranges::none_of(drawn.picture.texels, isRed));
     arc.is_blocked = true;
     const TexelPicture red = drawArc(arc, eye, {false, true}).picture;
-    CHECK(std::ranges::all_of(red.texels, [&](std::uint32_t texel) { return texel >> 24 < 250u || isRed(texel); }));
+    CHECK(std::ranges::all_of(red.texels,
+                              [&](std::uint32_t texel) { return texel >> 24 < 250u || isRed(texel); }));
 }
 
 TEST_CASE("a panel out of sight comes before the eyes after a while, one that is seen stays") {

@@ -18,7 +18,9 @@ struct Painted {
             for (int c = 0; c < 4; ++c) { image.values.push_back(colours.back()[c]); }
         }
         std::vector<glm::uvec2> halves;
-        for (const glm::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.r, c.g}), glm::packHalf2x16({c.b, c.a})); }
+        for (const glm::vec4& c : colours) {
+            halves.emplace_back(glm::packHalf2x16({c.r, c.g}), glm::packHalf2x16({c.b, c.a}));
+        }
         picture.size_px = size_px;
         picture.half_floats = half_floats;
         picture.colours = half_floats ? gpu.upload("colours", halves) : gpu.upload("colours", colours);
@@ -40,7 +42,8 @@ TEST_CASE_FIXTURE(Gpu, "a copy shows what the view saw of the picture, however m
             Eye view = painted.eye;
             view.size_px = {40, 30};
             view.intrinsics = intrinsicsFromFovX(0.9, view.size_px);
-            view.world_from_camera.orientation = glm::angleAxis(0.05, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)));
+            view.world_from_camera.orientation =
+                glm::angleAxis(0.05, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)));
             PictureCopy copy(context());
             REQUIRE_FALSE(copy.ask());
             run([&](Commands& commands) { copy.record(commands, painted.picture, painted.eye, view); });
@@ -53,7 +56,8 @@ TEST_CASE_FIXTURE(Gpu, "a copy shows what the view saw of the picture, however m
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that was not drawn leaves no copy, and others than the one that was asked change nothing") {
+TEST_CASE_FIXTURE(
+    Gpu, "a frame that was not drawn leaves no copy, and others than the one that was asked change nothing") {
     const Painted first(*this, {16, 16}, true), later(*this, {48, 37}, true);
     PictureCopy copy(context());
     CHECK(copy.take() == nullptr);

@@ -73,8 +73,8 @@ TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or 
     for (const auto& [name, bytes] : makeSog()) { write("statue/" + name, bytes); }
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
-    for (const std::string& place :
-         {(path / "statue").string(), (path / "statue").string() + "/", (path / "statue" / "meta.json").string()}) {
+    for (const std::string& place : {(path / "statue").string(), (path / "statue").string() + "/",
+                                     (path / "statue" / "meta.json").string()}) {
         CAPTURE(place);
         scenes.begin(place);
         CHECK(scenes.take(state).empty());
@@ -85,7 +85,9 @@ TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or 
 }
 #endif
 
-TEST_CASE_FIXTURE(Shown, "one that was asked for while another came takes its place, and if it cannot be read the first comes after all") {
+TEST_CASE_FIXTURE(Shown,
+                  "one that was asked for while another came takes its place, and if it cannot be read the "
+                  "first comes after all") {
     ShownScene scenes(context(), options, log);
     scenes.begin("builtin:fence");
     scenes.begin("builtin:slanted-wall");
@@ -104,7 +106,9 @@ TEST_CASE_FIXTURE(Shown, "one that was asked for while another came takes its pl
     CHECK_THROWS_AS(static_cast<void>(none.take(state)), Error);
 }
 
-TEST_CASE_FIXTURE(Shown, "a place belongs to the scene that it was given with: others start at their own, or where they were saved") {
+TEST_CASE_FIXTURE(Shown,
+                  "a place belongs to the scene that it was given with: others start at their own, or where "
+                  "they were saved") {
     const auto startOf = [&](const std::string& scene, const ViewOptions& given) {
         ShownScene scenes(context(), given, log);
         scenes.begin(scene);
@@ -126,7 +130,9 @@ TEST_CASE_FIXTURE(Shown, "a place belongs to the scene that it was given with: o
     CHECK(same(startOf("builtin:step-edge", options), given));
 }
 
-TEST_CASE_FIXTURE(Shown, "a remembered place that is of no use is one line, the scene is shown at its start, saving mends the file") {
+TEST_CASE_FIXTURE(Shown,
+                  "a remembered place that is of no use is one line, the scene is shown at its start, saving "
+                  "mends the file") {
     const fs::path file = viewSettingsFile(options.scene);
     const auto showAgain = [&](std::string& complaint) {
         ShownScene scenes(context(), options, log);
@@ -149,7 +155,8 @@ TEST_CASE_FIXTURE(Shown, "a remembered place that is of no use is one line, the 
         CHECK(complaint.find(file.string()) != std::string::npos);
         CHECK(complaint.find('\n') == std::string::npos);
     };
-    for (const std::string& text : {std::string("[view\n"), std::string("[view]\nunits-per-metre = 2\n"), std::string("\xff\xfe\0\0", 4)}) {
+    for (const std::string& text : {std::string("[view\n"), std::string("[view]\nunits-per-metre = 2\n"),
+                                    std::string("\xff\xfe\0\0", 4)}) {
         CAPTURE(text);
         spoil(text);
         checkSaid();
@@ -172,7 +179,8 @@ TEST_CASE_FIXTURE(Shown, "a remembered place that is of no use is one line, the 
     CHECK(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file's end, and so does the way to the device") {
+TEST_CASE_FIXTURE(
+    Shown, "loading gives up where it is told to, before the file's end, and so does the way to the device") {
     struct Enough {};
     go("scene atelier --splats 200000 --out many.ply");
     go("convert many.ply many.spz");
@@ -196,7 +204,9 @@ TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file'
     CHECK(furthest < 0.6);
 }
 
-TEST_CASE_FIXTURE(Shown, "a loader that was told to give up ends, and keeps nothing in memory, whether it was in time or not") {
+TEST_CASE_FIXTURE(
+    Shown,
+    "a loader that was told to give up ends, and keeps nothing in memory, whether it was in time or not") {
     const std::uint64_t before = context().memoryUse().current_bytes;
     SceneLoader early(context(), "builtin:fence", options.run), late(context(), "builtin:fence", options.run);
     early.cancel();
@@ -237,8 +247,8 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
         return readBack<std::uint32_t>(bytes, std::size_t{kPanelPx.x} * kPanelPx.y);
     };
     using Format = vk::Format;
-    for (const auto& [encoded, linear] :
-         {std::pair(Format::eR8G8B8A8Srgb, Format::eR8G8B8A8Unorm), std::pair(Format::eB8G8R8A8Srgb, Format::eB8G8R8A8Unorm)}) {
+    for (const auto& [encoded, linear] : {std::pair(Format::eR8G8B8A8Srgb, Format::eR8G8B8A8Unorm),
+                                          std::pair(Format::eB8G8R8A8Srgb, Format::eB8G8R8A8Unorm)}) {
         const std::vector<std::uint32_t> seen = drawn(encoded), light = drawn(linear);
         std::set<std::uint32_t> colours;
         double farthest = 0.0;
@@ -246,7 +256,8 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
             colours.insert(seen[i]);
             for (const int shift : {0, 8, 16}) {
                 const double value = (seen[i] >> shift & 255) / 255.0;
-                const double expected = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+                const double expected =
+                    value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
                 farthest = std::max(farthest, std::abs((light[i] >> shift & 255) - 255.0 * expected));
             }
         }
@@ -256,7 +267,8 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
 }
 
 TEST_CASE_FIXTURE(Shown,
-                  "two scenes are compared where their files say they are; another scene ends that, and so does one that cannot be read") {
+                  "two scenes are compared where their files say they are; another scene ends that, and so "
+                  "does one that cannot be read") {
     Scene far = loadScene("builtin:one-splat");
     far.origin = {500'000.0, 0.0, -300'000.0};
     writePly(far, (path / "far.ply").string());
@@ -295,8 +307,9 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(scenes.drawn() == scenes.get());
 }
 
-TEST_CASE_FIXTURE(
-    Shown, "where two scenes do not fit together, the one that is shown goes first, with a word, and comes back if that was in vain") {
+TEST_CASE_FIXTURE(Shown,
+                  "where two scenes do not fit together, the one that is shown goes first, with a word, and "
+                  "comes back if that was in vain") {
     go("scene atelier --splats 20000 --out many.ply");
     go("scene atelier --splats 24000 --out more.ply");
     go("scene atelier --splats 400000 --out most.ply");
@@ -316,7 +329,9 @@ TEST_CASE_FIXTURE(
     const Similarity moved = Similarity{{1, 0, 0, 0}, {1, 2, 3}, 2.0};
     state.place(moved);
     scenes.begin(more);
-    CHECK(scenes.take(state) == options.scene + " and " + more + " do not fit into the device's memory together: the first one goes first");
+    CHECK(scenes.take(state) ==
+          options.scene + " and " + more +
+              " do not fit into the device's memory together: the first one goes first");
     CHECK(scenes.get() == nullptr);
     CHECK(scenes.name() == more);
     CHECK(scenes.take(state).empty());
@@ -354,7 +369,9 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
         for (const Viewpoint& viewpoint : keptViewpoints(options.scene)) { all += viewpoint.name + ";"; }
         return all;
     };
-    for (const double z : {-1.0, -2.0, -3.0}) { list.keep({{0.0, 0.0, z}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.0}, 60.0}); }
+    for (const double z : {-1.0, -2.0, -3.0}) {
+        list.keep({{0.0, 0.0, z}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.0}, 60.0});
+    }
     CHECK(names() == "your own 1;your own 2;your own 3;");
     list.rename("door");
     list.moveBy(-1);
@@ -381,7 +398,8 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     for (const int added : {2, 0}) {
         list.read("");
         readAll();
-        CHECK(said == fmt::format("2 viewpoints from {}, {} of them new", (path / "one.viewpoints.json").string(), added));
+        CHECK(said == fmt::format("2 viewpoints from {}, {} of them new",
+                                  (path / "one.viewpoints.json").string(), added));
     }
     CHECK(list.count() == 2);
     list.read((path / "gone.json").string());
@@ -391,13 +409,17 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     std::string toured;
     list.toggleTour();
     for (int i = 0; i < 100 && list.isTouring(); ++i) {
-        if (const Viewpoint* const next = list.pass(0.25, true)) { toured += fmt::format("{} {};", i, next->name); }
+        if (const Viewpoint* const next = list.pass(0.25, true)) {
+            toured += fmt::format("{} {};", i, next->name);
+        }
     }
     CHECK(toured == "0 door;6 your own 2;");
     CHECK(said == "the tour is over");
 }
 
-TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {
+TEST_CASE_FIXTURE(Shown,
+                  "another method is drawn once its kernels are there, made beside the frames, and the next "
+                  "scene comes with them") {
     ViewSettings settings;
     options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
     const glm::uvec2 size_px(64, 64);

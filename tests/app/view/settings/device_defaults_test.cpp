@@ -7,8 +7,11 @@ SUITE(device_defaults) {
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
 TEST_CASE("small is what a headset's processor holds, or a GPU within a processor that has less than 8 GiB") {
-    const DeviceDefaults headset{
-        .quality = Quality::kFast, .resolution_scale = 0.7, .refresh_rate = 72.0, .sh_degree = 2, .most_splats = 11'000'000};
+    const DeviceDefaults headset{.quality = Quality::kFast,
+                                 .resolution_scale = 0.7,
+                                 .refresh_rate = 72.0,
+                                 .sh_degree = 2,
+                                 .most_splats = 11'000'000};
     CHECK(defaultsOf("Turnip Adreno (TM) 750", true, 11 * kGiB) == headset);
     for (const char* name : {"Mali-G610 MC4 (Panfrost)", "Mali-G78", "V3D 7.1.7"}) {
         CHECK_MESSAGE(defaultsOf(name, true, 6 * kGiB).most_splats == 6'000'000, name);

@@ -58,7 +58,8 @@ struct Wearer {
     }
 };
 
-TEST_CASE_FIXTURE(Wearer, "a pinch with the palm towards the eyes is the menu button, one with its back to them is not") {
+TEST_CASE_FIXTURE(
+    Wearer, "a pinch with the palm towards the eyes is the menu button, one with its back to them is not") {
     xr::Hand& hand = now.hands[kLeft];
     hand.joints.emplace();
     const auto place = [&](XrHandJointEXT joint, double x, double y) {
@@ -95,11 +96,14 @@ double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 // Canted eyes: the left one is turned outwards by 5 degrees.
-const std::array<Pose, 2> kEyes{Pose{glm::angleAxis(glm::radians(-5.0), glm::dvec3(0, 1, 0)), {-0.03, 0.0, 0.0}},
-                                Pose{{1, 0, 0, 0}, {0.03, 0.0, 0.0}}};
+const std::array<Pose, 2> kEyes{
+    Pose{glm::angleAxis(glm::radians(-5.0), glm::dvec3(0, 1, 0)), {-0.03, 0.0, 0.0}},
+    Pose{{1, 0, 0, 0}, {0.03, 0.0, 0.0}}};
 const glm::dvec3 kAside = glm::normalize(glm::dvec3(0.3, -0.2, 1.0));
 
-TEST_CASE_FIXTURE(Pointing, "both hands point, and the one that clicked last is the pointer until the other one clicks or it misses") {
+TEST_CASE_FIXTURE(Pointing,
+                  "both hands point, and the one that clicked last is the pointer until the other one clicks "
+                  "or it misses") {
     hands = {pointingAt(panel, {-0.2, 0.0}), pointingAt(panel, {0.2, 0.0})};
     CHECK(at() == doctest::Approx(600));
     CHECK(rays() == 2);
@@ -120,7 +124,8 @@ TEST_CASE_FIXTURE(Pointing, "both hands point, and the one that clicked last is 
     CHECK(at() == doctest::Approx(600));
 }
 
-TEST_CASE_FIXTURE(Pointing, "a trigger that was pulled beside the panel does not click when the ray comes over it") {
+TEST_CASE_FIXTURE(Pointing,
+                  "a trigger that was pulled beside the panel does not click when the ray comes over it") {
     hands[kRight] = pointingAway();
     hands[kRight].clicks = true;
     CHECK(at() < 0.0);
@@ -137,7 +142,9 @@ TEST_CASE_FIXTURE(Pointing, "a trigger that was pulled beside the panel does not
     CHECK_FALSE(panel.clicksElsewhere(kRight));
 }
 
-TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the front alone; a strip joins its ends and faces the eye") {
+TEST_CASE_FIXTURE(
+    Pointing,
+    "a ray meets the panel where it points, from the front alone; a strip joins its ends and faces the eye") {
     // Right of the panel's middle and below it, by a quarter.
     hands[kRight] = pointingAt(panel, {0.2, 0.1});
     CHECK(at() == doctest::Approx(600));
@@ -146,7 +153,8 @@ TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the fro
     const auto seen = panel.rays(glm::dvec3(0.0), std::nullopt);
     REQUIRE(seen.size() == 1);
     CHECK(these(seen[0].sprite, seen[0].strip.size_m.y) == these(Sprite::kRay, doctest::Approx(0.5)));
-    CHECK(glm::distance(seen[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
+    CHECK(glm::distance(seen[0].strip.room_from_strip.position,
+                        transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
     // From behind the panel, towards it.
     hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});
     CHECK(at() < 0.0);
@@ -172,7 +180,8 @@ TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the fro
     }
 }
 
-TEST_CASE("a path meets what it goes into between two of its points, and passes behind what is far before it") {
+TEST_CASE(
+    "a path meets what it goes into between two of its points, and passes behind what is far before it") {
     using Depths = std::array<std::optional<double>, kProbePoints>;
     Depths points, wall;
     for (std::size_t i = 0; i < kProbePoints; ++i) {
@@ -193,7 +202,8 @@ TEST_CASE("a path meets what it goes into between two of its points, and passes 
     CHECK(behind.is_hidden);
     CHECK_FALSE(behind.meets.has_value());
     CHECK(probeMetres(0.0) == doctest::Approx(0.2));
-    CHECK(glm::distance(probeRay({{1, 0, 0, 0}, {0.0, 1.0, 0.0}})[kProbePoints - 1], glm::dvec3(0.0, 1.0, 30.0)) < 1e-9);
+    CHECK(glm::distance(probeRay({{1, 0, 0, 0}, {0.0, 1.0, 0.0}})[kProbePoints - 1],
+                        glm::dvec3(0.0, 1.0, 30.0)) < 1e-9);
 }
 
 TEST_CASE_FIXTURE(Wearer, "one does not teleport to where the arc would lead through the scene") {
@@ -221,12 +231,13 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
     const TeleportAim level = aimTeleport({{1, 0, 0, 0}, {0.2, 0.4, 0.3}}, 1.6);
     REQUIRE(level.target.has_value());
     CHECK(these(level.target->y, level.target->x, level.target->z, level.arc.points.size()) ==
-          these(doctest::Approx(1.6), doctest::Approx(0.2), doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)),
-                kArcPieces * kPointsOfPiece + 1));
+          these(doctest::Approx(1.6), doctest::Approx(0.2),
+                doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)), kArcPieces * kPointsOfPiece + 1));
     CHECK(glm::distance(level.arc.points.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
     // Aimed upwards it flies farther; aimed at one's feet it does not fly at all.
     const auto reach = [](double up_rad) {
-        const TeleportAim aim = aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
+        const TeleportAim aim =
+            aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
         return glm::length(glm::dvec2(aim.target->x, aim.target->z));
     };
     CHECK(reach(0.6) == between(reach(0.0) + 1.0, 7.0));
@@ -238,12 +249,16 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
 std::vector<glm::dvec3> stairAndTable() {
     std::vector<glm::dvec3> ground;
     for (int z = -5; z < 35; ++z) {
-        for (int x = -5; x < 6; ++x) { ground.emplace_back(0.1 * x, z < 10 ? 1.6 : z < 20 ? 1.43 : 0.7, 0.1 * z); }
+        for (int x = -5; x < 6; ++x) {
+            ground.emplace_back(0.1 * x, z < 10 ? 1.6 : z < 20 ? 1.43 : 0.7, 0.1 * z);
+        }
     }
     return ground;
 }
 
-TEST_CASE_FIXTURE(Wearer, "who follows the ground goes up a stair and down again, smoothly, and onto no table; others stay as high") {
+TEST_CASE_FIXTURE(Wearer,
+                  "who follows the ground goes up a stair and down again, smoothly, and onto no table; "
+                  "others stay as high") {
     for (const bool follows : {true, false}) {
         CAPTURE(follows);
         ViewSettings settings;
@@ -276,7 +291,9 @@ TEST_CASE_FIXTURE(Wearer, "who follows the ground goes up a stair and down again
     }
 }
 
-TEST_CASE_FIXTURE(Wearer, "nobody gets under the floor, which holds where nothing else was seen; what was seen goes with its scene") {
+TEST_CASE_FIXTURE(Wearer,
+                  "nobody gets under the floor, which holds where nothing else was seen; what was seen goes "
+                  "with its scene") {
     ViewSettings settings;
     settings.follow_ground = true;
     state = ViewState(settings);
@@ -319,7 +336,9 @@ TEST_CASE("a hand that is lost while it aims for a place moves nobody") {
     CHECK(these(wearer.controls.aimingHand().has_value(), wearer.place()) == these(false, glm::dvec3(0.0)));
 }
 
-TEST_CASE("the stick of the hand that points at the panel scrolls there, the other hand's moves the wearer, and a throw goes on over it") {
+TEST_CASE(
+    "the stick of the hand that points at the panel scrolls there, the other hand's moves the wearer, and a "
+    "throw goes on over it") {
     for (const int pointing : {kLeft, kRight}) {
         for (const bool teleports : {false, true}) {
             INFO("pointing ", pointing, ", teleports ", teleports);
@@ -328,7 +347,8 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, the oth
             now.hands[static_cast<std::size_t>(pointing)] = pointingAt(panel, {0.1, 0.1});
             now.hands[static_cast<std::size_t>(1 - pointing)] = pointingAway();
             wearer.push(pointing, {0.0, 1.0});
-            CHECK(these(panel.isPointedAtBy(pointing), panel.isPointedAtBy(1 - pointing)) == these(true, false));
+            CHECK(these(panel.isPointedAtBy(pointing), panel.isPointedAtBy(1 - pointing)) ==
+                  these(true, false));
             CHECK(panel.pointer().wheel > 0.0);
             CHECK(wearer.place() == glm::dvec3(0.0));
             CHECK_FALSE(controls.aimingHand().has_value());
@@ -350,12 +370,15 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, the oth
     CHECK(wearer.place() == glm::dvec3(0.0));
 }
 
-TEST_CASE("the stick turns smoothly, a right angle in a second, which counts as moving, or once until it comes back") {
+TEST_CASE(
+    "the stick turns smoothly, a right angle in a second, which counts as moving, or once until it comes "
+    "back") {
     ViewSettings settings;
     settings.smooth_turn = true;
     Wearer smooth(settings);
     for (int i = 0; i < 10; ++i) { smooth.push(kRight, {1.0, 0.0}); }
-    CHECK(these(smooth.controls.isMoving(), smooth.turn_rad()) == these(true, doctest::Approx(1.5707963).epsilon(1e-6)));
+    CHECK(these(smooth.controls.isMoving(), smooth.turn_rad()) ==
+          these(true, doctest::Approx(1.5707963).epsilon(1e-6)));
     smooth.push(kRight, {0.0, 0.0});
     CHECK_FALSE(smooth.controls.isMoving());
     Wearer wearer;
@@ -374,13 +397,16 @@ TEST_CASE("the stick turns smoothly, a right angle in a second, which counts as 
     CHECK(turns({-0.9, 0.0}) == -1);
 }
 
-TEST_CASE("an eye that nobody sees looks at the middle of its lens, one that is seen where it is seen to, with less clear") {
+TEST_CASE(
+    "an eye that nobody sees looks at the middle of its lens, one that is seen where it is seen to, with "
+    "less clear") {
     GazeFollower follower;
     std::array<std::optional<Gaze>, 2> gazes;
     for (int i = 0; i < 100; ++i) {
         gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
         REQUIRE(gazes[kLeft]);
-        CHECK(these(gazes[kLeft]->direction, gazes[kRight]->clear_rad) == these(glm::dvec3(0.0, 0.0, 1.0), kLensClear));
+        CHECK(these(gazes[kLeft]->direction, gazes[kRight]->clear_rad) ==
+              these(glm::dvec3(0.0, 0.0, 1.0), kLensClear));
     }
     for (int i = 0; i < 20; ++i) { gazes = follower.update(kAside, kEyes, kLensClear, kStep); }
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
@@ -393,14 +419,17 @@ TEST_CASE("an eye that nobody sees looks at the middle of its lens, one that is 
     CHECK(follower.update(kAside, kEyes, 0.05, kStep)[kLeft]->clear_rad == doctest::Approx(0.05));
 }
 
-TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens without a jump, and is found so again") {
+TEST_CASE(
+    "a blink changes nothing, a gaze that stays lost goes back to the lens without a jump, and is found so "
+    "again") {
     GazeFollower follower;
     std::array<std::optional<Gaze>, 2> gazes;
     for (int i = 0; i < 20; ++i) { gazes = follower.update(kAside, kEyes, kLensClear, kStep); }
     const Gaze seen = *gazes[kRight];
     for (double t = kStep; t < GazeFollower::kHoldSeconds - 0.5 * kStep; t += kStep) {
         gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
-        CHECK(these(gazes[kRight]->direction, gazes[kRight]->clear_rad) == these(seen.direction, seen.clear_rad));
+        CHECK(these(gazes[kRight]->direction, gazes[kRight]->clear_rad) ==
+              these(seen.direction, seen.clear_rad));
     }
     const auto follow = [&](const std::optional<glm::dvec3>& gaze, double most_rad) {
         const Gaze before = *gazes[kRight];
@@ -409,8 +438,11 @@ TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens
         CHECK(std::abs(before.clear_rad - gazes[kRight]->clear_rad) <= most_rad);
     };
     const double whole_rad = angleBetween(seen.direction, {0.0, 0.0, 1.0});
-    for (int i = 0; i < 100; ++i) { follow(std::nullopt, 1.1 * whole_rad * kStep / GazeFollower::kLoseSeconds); }
-    CHECK(these(gazes[kRight]->direction, gazes[kRight]->clear_rad) == these(glm::dvec3(0.0, 0.0, 1.0), kLensClear));
+    for (int i = 0; i < 100; ++i) {
+        follow(std::nullopt, 1.1 * whole_rad * kStep / GazeFollower::kLoseSeconds);
+    }
+    CHECK(these(gazes[kRight]->direction, gazes[kRight]->clear_rad) ==
+          these(glm::dvec3(0.0, 0.0, 1.0), kLensClear));
     for (int i = 0; i < 20; ++i) { follow(kAside, 1.1 * whole_rad * kStep / GazeFollower::kFindSeconds); }
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
 }

@@ -17,8 +17,10 @@ vk::SurfaceCapabilitiesKHR able(vk::Extent2D current, vk::Extent2D least, vk::Ex
 TEST_CASE("pictures are as large as the compositor says, or as the window where it does not") {
     CHECK(windowExtent(able({1300, 700}, {1, 1}, {4096, 4096}), kWindow) == vk::Extent2D(1300, 700));
     CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {4096, 4096}), kWindow) == kWindow);
-    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {1024, 4096}), kWindow) == vk::Extent2D(1024, 720));
-    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {2000, 1}, {4096, 4096}), kWindow) == vk::Extent2D(2000, 720));
+    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {1024, 4096}), kWindow) ==
+          vk::Extent2D(1024, 720));
+    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {2000, 1}, {4096, 4096}), kWindow) ==
+          vk::Extent2D(2000, 720));
     // On Wayland, before the window is first shown.
     CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {0, 0}), kWindow) == vk::Extent2D(1, 1));
 }
@@ -32,13 +34,16 @@ TEST_CASE("formats that show bytes as they are are taken, eight bits first") {
     using Format = vk::Format;
     const auto space = vk::ColorSpaceKHR::eSrgbNonlinear;
     using Offered = std::vector<vk::SurfaceFormatKHR>;
-    CHECK(windowFormat(Offered{{Format::eB8G8R8A8Srgb, space}, {Format::eB8G8R8A8Unorm, space}})->format == Format::eB8G8R8A8Unorm);
-    CHECK(windowFormat(Offered{{Format::eA2B10G10R10UnormPack32, space}, {Format::eR8G8B8A8Unorm, space}})->format ==
-          Format::eR8G8B8A8Unorm);
-    CHECK(windowFormat(Offered{{Format::eA2B10G10R10UnormPack32, space}})->format == Format::eA2B10G10R10UnormPack32);
+    CHECK(windowFormat(Offered{{Format::eB8G8R8A8Srgb, space}, {Format::eB8G8R8A8Unorm, space}})->format ==
+          Format::eB8G8R8A8Unorm);
+    CHECK(windowFormat(Offered{{Format::eA2B10G10R10UnormPack32, space}, {Format::eR8G8B8A8Unorm, space}})
+              ->format == Format::eR8G8B8A8Unorm);
+    CHECK(windowFormat(Offered{{Format::eA2B10G10R10UnormPack32, space}})->format ==
+          Format::eA2B10G10R10UnormPack32);
     CHECK_FALSE(windowFormat(Offered{{Format::eB8G8R8A8Srgb, space}}).has_value());
     // Linear light instead of encoded values.
-    CHECK_FALSE(windowFormat(Offered{{Format::eR8G8B8A8Unorm, vk::ColorSpaceKHR::eExtendedSrgbLinearEXT}}).has_value());
+    CHECK_FALSE(windowFormat(Offered{{Format::eR8G8B8A8Unorm, vk::ColorSpaceKHR::eExtendedSrgbLinearEXT}})
+                    .has_value());
     CHECK(windowFormat(Offered{{Format::eUndefined, space}})->format == Format::eB8G8R8A8Unorm);
 }
 

@@ -9,9 +9,11 @@ const std::string kPly = makePly(45).bytes(), kOther = makePly(9).bytes();
 // As a good server does: it answers 304 to a client that already has the version.
 WebServer::Handler withVersions(std::string bytes) {
     return [held = std::move(bytes)](const WebRequest& request) {
-        const std::string version = fmt::format("ETag: \"{}\"\r\nLast-Modified: Thu, 01 Jan 2026 00:00:00 GMT\r\n", held.size());
+        const std::string version =
+            fmt::format("ETag: \"{}\"\r\nLast-Modified: Thu, 01 Jan 2026 00:00:00 GMT\r\n", held.size());
         const bool has_it = request.header("if-none-match") == fmt::format("\"{}\"", held.size());
-        return has_it ? WebAnswer{"HTTP/1.1 304 Not Modified\r\n" + version + "\r\n"} : answer("200 OK", version, held);
+        return has_it ? WebAnswer{"HTTP/1.1 304 Not Modified\r\n" + version + "\r\n"}
+                      : answer("200 OK", version, held);
     };
 }
 
@@ -22,19 +24,23 @@ fs::path noteOf(const Folder& folder) {
     return {};
 }
 
-void setAge(const fs::path& file, int hours) { fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(hours)); }
+void setAge(const fs::path& file, int hours) {
+    fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(hours));
+}
 
-TEST_CASE("a file that has not changed is sent once, and one that has takes the place of the one that was kept") {
+TEST_CASE(
+    "a file that has not changed is sent once, and one that has takes the place of the one that was kept") {
     const Folder folder;
     std::atomic<int> unchanged = 0;
-    const WebServer server([&, old = withVersions(kPly), latest = withVersions(kOther)](const WebRequest& request) {
-        const WebAnswer given = request.number < 3 ? old(request) : latest(request);
-        if (given.bytes.find(" 304 ") != std::string::npos) {
-            CHECK(request.header("if-modified-since") == "Thu, 01 Jan 2026 00:00:00 GMT");
-            ++unchanged;
-        }
-        return given;
-    });
+    const WebServer server(
+        [&, old = withVersions(kPly), latest = withVersions(kOther)](const WebRequest& request) {
+            const WebAnswer given = request.number < 3 ? old(request) : latest(request);
+            if (given.bytes.find(" 304 ") != std::string::npos) {
+                CHECK(request.header("if-modified-since") == "Thu, 01 Jan 2026 00:00:00 GMT");
+                ++unchanged;
+            }
+            return given;
+        });
     const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (int turn = 0; turn < 3; ++turn) {
         LoadNotes notes;
@@ -44,7 +50,8 @@ TEST_CASE("a file that has not changed is sent once, and one that has takes the 
     CHECK(server.asked().size() == 3);
     CHECK(unchanged == 2);
     CHECK(filesIn(folder.file("cache")).size() == 2);
-    checkSameScene(loadScene(folder.write("now.ply", kOther)), loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+    checkSameScene(loadScene(folder.write("now.ply", kOther)),
+                   loadFromWeb(server.at("/a.ply"), webSettings(folder)));
     CHECK(unchanged == 2);
     CHECK(filesIn(folder.file("cache")).size() == 2);
     CHECK(bytesIn(folder.file("cache")) < kOther.size() + 1000);
@@ -67,7 +74,9 @@ TEST_CASE("without its server a scene is shown as it was, and one line says so")
     const Folder folder;
     const Scene scene = loadScene(folder.write("a.ply", kPly));
     WebServer server([handle = withVersions(kPly)](const WebRequest& request) {
-        return request.number == 0 ? handle(request) : request.number == 1 ? answer("404 Not Found") : answer("503 Service Unavailable");
+        return request.number == 0   ? handle(request)
+               : request.number == 1 ? answer("404 Not Found")
+                                     : answer("503 Service Unavailable");
     });
     const std::string address = server.at("/a.ply");
     (void)loadFromWeb(address, webSettings(folder));
@@ -75,7 +84,9 @@ TEST_CASE("without its server a scene is shown as it was, and one line says so")
     CHECK(contains(webError(address, webSettings(folder)), "is not there"));
     LoadNotes busy, gone;
     checkSameScene(scene, loadFromWeb(address, webSettings(folder), &busy));
-    CHECK(contains(busy.stale, address + ": the server cannot serve it (it answers 503), after 4 attempts; taken as it was on 20"));
+    CHECK(contains(
+        busy.stale,
+        address + ": the server cannot serve it (it answers 503), after 4 attempts; taken as it was on 20"));
     server.stop();
     checkSameScene(scene, loadFromWeb(address, webSettings(folder), &gone));
     CHECK(contains(gone.stale, address + ": cannot be reached ("));
@@ -101,7 +112,9 @@ TEST_CASE("the cache keeps its limit, and what was used last") {
     CHECK(fs::exists(first));
     // A file larger than the whole cache is not taken, whether or not the server announces its size; without
     // a cache it is shown and not kept.
-    const WebServer silent([](const WebRequest&) { return WebAnswer{"HTTP/1.1 200 OK\r\n\r\n" + kPly, WebAnswer::Then::kClose}; });
+    const WebServer silent([](const WebRequest&) {
+        return WebAnswer{"HTTP/1.1 200 OK\r\n\r\n" + kPly, WebAnswer::Then::kClose};
+    });
     settings.cache_bytes = kPly.size() / 2;
     CHECK(contains(webError(server.at("/a.ply"), settings),
                    fmt::format("is {} bytes long, more than the cache's {}", kPly.size(), kPly.size() / 2)));
@@ -118,13 +131,15 @@ TEST_CASE("without a folder for a cache nothing stays") {
     settings.cache_folder.clear();
     const auto left = [] {
         const auto names = filesIn(fs::temp_directory_path());
-        return std::ranges::count_if(names, [](const std::string& name) { return name.starts_with("binosplat-web-"); });
+        return std::ranges::count_if(
+            names, [](const std::string& name) { return name.starts_with("binosplat-web-"); });
     };
     const auto before = left();
     CHECK(loadFromWeb(server.at("/a.ply"), settings).size() > 0);
     CHECK(left() == before);
     settings.cache_folder = folder.write("file", "no folder");
-    CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/a.ply"), settings), doctest::Contains("expected a place to write to"), Error);
+    CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/a.ply"), settings),
+                         doctest::Contains("expected a place to write to"), Error);
 }
 
 TEST_CASE("a broken cache is one without the file") {
@@ -135,9 +150,10 @@ TEST_CASE("a broken cache is one without the file") {
     (void)loadFromWeb(server.at("/a.ply"), settings);
     const std::string note = noteOf(folder).filename().string();
     const std::string whole = textIn(folder.file("cache/" + note));
-    for (const std::string& broken : {std::string(), std::string("{"), std::string("[]"), replaced(whole, "\"bytes\": ", "\"bytes\": 1"),
-                                      replaced(whole, "/a.ply", "/b.ply"), replaced(whole, "\"changed_ns\": ", "\"changed_ns\": 1"),
-                                      replaced(whole, "\"etag\": \"\\\"", "\"etag\": 7, \"x\": \"\\\"")}) {
+    for (const std::string& broken :
+         {std::string(), std::string("{"), std::string("[]"), replaced(whole, "\"bytes\": ", "\"bytes\": 1"),
+          replaced(whole, "/a.ply", "/b.ply"), replaced(whole, "\"changed_ns\": ", "\"changed_ns\": 1"),
+          replaced(whole, "\"etag\": \"\\\"", "\"etag\": 7, \"x\": \"\\\"")}) {
         CAPTURE(broken);
         (void)folder.write("cache/" + note, broken);
         checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
@@ -166,7 +182,9 @@ TEST_CASE("several at once use one cache, even one in which nothing may stay") {
                 try {
                     const Scene far = loadFromWeb(server.at("/a.ply"), settings);
                     same += far.positions == scene.positions && far.sh == scene.sh;
-                } catch (const Error& error) { thrown_out += contains(error.what(), "is removed from the cache"); }
+                } catch (const Error& error) {
+                    thrown_out += contains(error.what(), "is removed from the cache");
+                }
             }
         };
         std::thread other(load);

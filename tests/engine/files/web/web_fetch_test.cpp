@@ -15,8 +15,10 @@ WebAnswer cutAfter(std::size_t bytes, WebAnswer::Then then = WebAnswer::Then::kC
 }
 
 // Part of a file of version "1".
-WebAnswer partOf(const std::string& whole, std::size_t from, std::size_t end, const std::string& total, const std::string& etag = "\"1\"") {
-    return answer("206 Partial Content", fmt::format("ETag: {}\r\nContent-Range: bytes {}-{}/{}\r\n", etag, from, end - 1, total),
+WebAnswer partOf(const std::string& whole, std::size_t from, std::size_t end, const std::string& total,
+                 const std::string& etag = "\"1\"") {
+    return answer("206 Partial Content",
+                  fmt::format("ETag: {}\r\nContent-Range: bytes {}-{}/{}\r\n", etag, from, end - 1, total),
                   whole.substr(from, end - from));
 }
 
@@ -26,7 +28,8 @@ WebAnswer withLength(const std::string& header, const std::string& body) {
 }
 
 // The error when a server gives every request this answer; afterwards the cache must be empty.
-std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder&) = webSettings, std::size_t attempts = 1) {
+std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder&) = webSettings,
+                    std::size_t attempts = 1) {
     const Folder folder;
     const WebServer server([given](const WebRequest&) { return given; });
     std::string message = webError(server.at("/a.ply"), settings(folder));
@@ -39,11 +42,14 @@ TEST_CASE("a server that is busy or cuts off is asked again") {
     const Folder folder;
     const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (const WebAnswer& first :
-         {answer("429 Too Many Requests", "Retry-After: 0\r\n"), answer("500 Internal Server Error", "", "sorry"),
-          answer("503 Service Unavailable"), cutAfter(0), cutAfter(kPly.size() / 2), cutAfter(kPly.size() - 1),
-          WebAnswer{"", WebAnswer::Then::kClose}, WebAnswer{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}}) {
+         {answer("429 Too Many Requests", "Retry-After: 0\r\n"),
+          answer("500 Internal Server Error", "", "sorry"), answer("503 Service Unavailable"), cutAfter(0),
+          cutAfter(kPly.size() / 2), cutAfter(kPly.size() - 1), WebAnswer{"", WebAnswer::Then::kClose},
+          WebAnswer{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}}) {
         CAPTURE(first.bytes.substr(0, 40));
-        const WebServer server([&](const WebRequest& request) { return request.number < 2 ? first : answer("200 OK", "", kPly); });
+        const WebServer server([&](const WebRequest& request) {
+            return request.number < 2 ? first : answer("200 OK", "", kPly);
+        });
         checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
         CHECK(server.asked().size() == 3);
         std::filesystem::remove_all(folder.file("cache"));
@@ -59,33 +65,37 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
     };
     const auto whole = [](const char* headers) { return answer("200 OK", headers, kPly); };
     // The rest, without its last byte.
-    WebAnswer shorter =
-        answer("206 Partial Content", fmt::format("ETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n", half, kPly.size() - 1, kPly.size()),
-               kPly.substr(half, kPly.size() - 1 - half));
+    WebAnswer shorter = answer(
+        "206 Partial Content",
+        fmt::format("ETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n", half, kPly.size() - 1, kPly.size()),
+        kPly.substr(half, kPly.size() - 1 - half));
     using Asked = std::vector<std::string>;
     const std::string asks = fmt::format("bytes={}- \"1\"", half);
     struct {
         const char* etag;  // of the first half
         WebAnswer second;  // after it, the whole file is sent
         Asked asked;       // what was requested then
-    } const breaks[]{{"\"1\"", rest(half, "\"1\""), {" ", asks}},
-                     // A server that sends the whole file, of this version or another.
-                     {"\"1\"", whole("ETag: \"1\"\r\n"), {" ", asks}},
-                     {"\"1\"", whole("ETag: \"2\"\r\n"), {" ", asks}},
-                     // What is sent is not the rest, or belongs to another version: the whole file is
-                     // requested.
-                     {"\"1\"", rest(half, "\"2\""), {" ", asks, " "}},
-                     {"\"1\"", rest(half + 1, "\"1\""), {" ", asks, " "}},
-                     {"\"1\"", rest(0, "\"1\""), {" ", asks, " "}},
-                     {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)), {" ", asks, " "}},
-                     {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"), {" ", asks, " "}},
-                     {"\"1\"", answer("416 Range Not Satisfiable"), {" ", asks, " "}},
-                     // A rest that is too short is one more break; a busy server's answer is never continued.
-                     {"\"1\"", shorter, {" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)}},
-                     {"\"1\"", answer("503 Service Unavailable", "", "busy"), {" ", asks, asks}},
-                     {"\"1\"", {"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}, {" ", asks, asks}},
-                     // Parts are put together only with a version that guarantees every byte to be the same.
-                     {"W/\"1\"", whole(""), {" ", " "}}};
+    } const breaks[]{
+        {"\"1\"", rest(half, "\"1\""), {" ", asks}},
+        // A server that sends the whole file, of this version or another.
+        {"\"1\"", whole("ETag: \"1\"\r\n"), {" ", asks}},
+        {"\"1\"", whole("ETag: \"2\"\r\n"), {" ", asks}},
+        // What is sent is not the rest, or belongs to another version: the whole file is
+        // requested.
+        {"\"1\"", rest(half, "\"2\""), {" ", asks, " "}},
+        {"\"1\"", rest(half + 1, "\"1\""), {" ", asks, " "}},
+        {"\"1\"", rest(0, "\"1\""), {" ", asks, " "}},
+        {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)), {" ", asks, " "}},
+        {"\"1\"",
+         answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"),
+         {" ", asks, " "}},
+        {"\"1\"", answer("416 Range Not Satisfiable"), {" ", asks, " "}},
+        // A rest that is too short is one more break; a busy server's answer is never continued.
+        {"\"1\"", shorter, {" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)}},
+        {"\"1\"", answer("503 Service Unavailable", "", "busy"), {" ", asks, asks}},
+        {"\"1\"", {"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}, {" ", asks, asks}},
+        // Parts are put together only with a version that guarantees every byte to be the same.
+        {"W/\"1\"", whole(""), {" ", " "}}};
     for (const auto& one : breaks) {
         CAPTURE(one.second.bytes.substr(0, 120));
         Asked asked;
@@ -103,15 +113,19 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
 }
 
 TEST_CASE("a file of unknown length goes on only to the length that the rest tells") {
-    const std::string chunk = fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300)), total = std::to_string(kPly.size());
-    const WebAnswer cut{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk, WebAnswer::Then::kClose};
-    for (const auto& [second, requests] :
-         {std::pair(partOf(kPly, 300, kPly.size(), total), 2u), {partOf(kPly, 300, 500, total), 3u}, {partOf(kPly, 300, 500, "*"), 3u}}) {
+    const std::string chunk = fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300)),
+                      total = std::to_string(kPly.size());
+    const WebAnswer cut{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk,
+                        WebAnswer::Then::kClose};
+    for (const auto& [second, requests] : {std::pair(partOf(kPly, 300, kPly.size(), total), 2u),
+                                           {partOf(kPly, 300, 500, total), 3u},
+                                           {partOf(kPly, 300, 500, "*"), 3u}}) {
         const Folder folder;
         const Scene scene = loadScene(folder.write("a.ply", kPly));
         const WebServer server([&, &rest = second](const WebRequest& request) {
             if (request.number < 2) { return request.number == 0 ? cut : rest; }
-            return request.headers.contains("range") ? partOf(kPly, 500, kPly.size(), total) : answer("200 OK", "ETag: \"1\"\r\n", kPly);
+            return request.headers.contains("range") ? partOf(kPly, 500, kPly.size(), total)
+                                                     : answer("200 OK", "ETag: \"1\"\r\n", kPly);
         });
         checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
         CHECK(server.asked().size() == requests);
@@ -126,10 +140,12 @@ TEST_CASE("a large file may break off more often than attempts are made") {
     const WebServer server([&](const WebRequest& request) {
         const std::string range = request.header("range");
         const std::size_t from = range.empty() ? 0 : std::stoul(range.substr(6));
-        return WebAnswer{fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\nETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n\r\n{}",
-                                     from > 0 ? "206 Partial Content" : "200 OK", large.size() - from, from, large.size() - 1, large.size(),
-                                     large.substr(from, kPiece)),
-                         WebAnswer::Then::kClose};
+        return WebAnswer{
+            fmt::format(
+                "HTTP/1.1 {}\r\nContent-Length: {}\r\nETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n\r\n{}",
+                from > 0 ? "206 Partial Content" : "200 OK", large.size() - from, from, large.size() - 1,
+                large.size(), large.substr(from, kPiece)),
+            WebAnswer::Then::kClose};
     });
     const Folder folder;
     WebSettings settings = webSettings(folder);
@@ -144,14 +160,18 @@ TEST_CASE("a few attempts are enough") {
           "the server cannot serve it (it answers 503), after 4 attempts; try again later");
     CHECK(errorOf(cutAfter(100), webSettings, 4) ==
           fmt::format("was cut off after 100 of {} bytes, after 4 attempts; try again later", kPly.size()));
-    CHECK(errorOf(WebAnswer{"", WebAnswer::Then::kClose}, webSettings, 4).starts_with("the server hangs up ("));
+    CHECK(
+        errorOf(WebAnswer{"", WebAnswer::Then::kClose}, webSettings, 4).starts_with("the server hangs up ("));
     // If a server asks to wait an hour, there is no second request.
-    CHECK(errorOf(answer("429 Too Many Requests", "Retry-After: 3600\r\n")) == "the server asks to wait 3600 s; try again then");
+    CHECK(errorOf(answer("429 Too Many Requests", "Retry-After: 3600\r\n")) ==
+          "the server asks to wait 3600 s; try again then");
 }
 
 TEST_CASE("a file that is not there, not for everybody, empty or no scene is refused at once") {
-    CHECK(errorOf(answer("404 Not Found", "", "<html>")) == "is not there (the server answers 404), expected the address of a scene file");
-    CHECK(errorOf(answer("403 Forbidden")) == "may not be read (the server answers 403), expected an address that anybody may read");
+    CHECK(errorOf(answer("404 Not Found", "", "<html>")) ==
+          "is not there (the server answers 404), expected the address of a scene file");
+    CHECK(errorOf(answer("403 Forbidden")) ==
+          "may not be read (the server answers 403), expected an address that anybody may read");
     CHECK(errorOf(answer("204 No Content")).starts_with("cannot be fetched (the server answers 204)"));
     CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be fetched (the server answers 304)"));
     // Whatever comes with the answer, and however much.
@@ -160,7 +180,8 @@ TEST_CASE("a file that is not there, not for everybody, empty or no scene is ref
     const Folder folder;
     const WebServer server({{"/empty", ""}, {"/page", "<!DOCTYPE html><html><body>A scene!</body></html>"}});
     CHECK(contains(webError(server.at("/empty"), webSettings(folder)), "is empty, expected a scene file"));
-    CHECK(contains(webError(server.at("/page"), webSettings(folder)), "a web page (HTML), not a splat scene"));
+    CHECK(
+        contains(webError(server.at("/page"), webSettings(folder)), "a web page (HTML), not a splat scene"));
 }
 
 TEST_CASE("what a server says of a file's length is not believed") {
@@ -176,7 +197,8 @@ TEST_CASE("what a server says of a file's length is not believed") {
         settings.fetch.most_bytes = kPly.size() - 1;
         return settings;
     };
-    const std::string chunked = "Transfer-Encoding: chunked\r\n", chunk = fmt::format("{:x}\r\n{}\r\n0\r\n\r\n", kPly.size(), kPly);
+    const std::string chunked = "Transfer-Encoding: chunked\r\n",
+                      chunk = fmt::format("{:x}\r\n{}\r\n0\r\n\r\n", kPly.size(), kPly);
     const std::string most = fmt::format("{} bytes, which is the most that is taken", kPly.size() - 1);
     CHECK(errorOf(withLength("", kPly), little) == "is longer than " + most);
     CHECK(errorOf(withLength(chunked, chunk), little) == "is longer than " + most);
@@ -186,33 +208,42 @@ TEST_CASE("what a server says of a file's length is not believed") {
 
     // Shorter: the scene ends early, whoever is to blame.
     const Folder folder;
-    const WebServer server([](const WebRequest&) { return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly); });
+    const WebServer server([](const WebRequest&) {
+        return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly);
+    });
     CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "a.ply: "));
 
     // With unknown length, the scene loads all the same.
     const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (const WebAnswer& given :
-         {withLength("", kPly), withLength("Content-Length: 99999999999999999999999\r\n", kPly), withLength(chunked, chunk)}) {
+         {withLength("", kPly), withLength("Content-Length: 99999999999999999999999\r\n", kPly),
+          withLength(chunked, chunk)}) {
         const WebServer other([given](const WebRequest&) { return given; });
         checkSameScene(scene, loadFromWeb(other.at("/a.ply"), webSettings(folder)));
     }
 }
 
 TEST_CASE("redirects are followed on the web, and never to a file") {
-    const auto leadTo = [](const std::string& place) { return answer("302 Found", "Location: " + place + "\r\n"); };
+    const auto leadTo = [](const std::string& place) {
+        return answer("302 Found", "Location: " + place + "\r\n");
+    };
     {
         const Folder folder;
         const Scene scene = loadScene(folder.write("a.ply", kPly));
         const WebServer end({{"/in/a.ply", kPly}});
-        const WebServer server([&](const WebRequest& request) { return leadTo(request.path == "/1" ? "/2" : end.at("/in/a.ply")); });
+        const WebServer server([&](const WebRequest& request) {
+            return leadTo(request.path == "/1" ? "/2" : end.at("/in/a.ply"));
+        });
         checkSameScene(scene, loadFromWeb(server.at("/1"), webSettings(folder)));
         CHECK(server.asked() == std::vector<std::string>{"/1", "/2"});
     }
-    for (const std::string& place : {std::string("file://" BINOSPLAT_SOURCE_DIR "/README.md"), std::string("file:///etc/passwd"),
-                                     std::string("ftp://127.0.0.1/a"), std::string("gopher://127.0.0.1/")}) {
+    for (const std::string& place :
+         {std::string("file://" BINOSPLAT_SOURCE_DIR "/README.md"), std::string("file:///etc/passwd"),
+          std::string("ftp://127.0.0.1/a"), std::string("gopher://127.0.0.1/")}) {
         CAPTURE(place);
         CHECK(errorOf(leadTo(place)) ==
-              "redirects to an address that may not be followed, expected one of http or https, and of https after https");
+              "redirects to an address that may not be followed, expected one of http or https, and of https "
+              "after https");
     }
     CHECK(errorOf(leadTo("/a.ply"), webSettings, 6) == "redirects more than 5 times, expected a file");
     CHECK_FALSE(contains(errorOf(leadTo("http://me:secret@127.0.0.1/a.ply")), "secret"));
@@ -221,7 +252,8 @@ TEST_CASE("redirects are followed on the web, and never to a file") {
 TEST_CASE("no redirect leads from the public web to a machine of this network") {
     const Folder folder;
     const WebServer server([&](const WebRequest& request) {
-        return request.path == "/1" ? answer("302 Found", "Location: /a.ply\r\n") : answer("200 OK", "", kPly);
+        return request.path == "/1" ? answer("302 Found", "Location: /a.ply\r\n")
+                                    : answer("200 OK", "", kPly);
     });
     struct {
         bool first_is_private, second_is_private, is_followed;
@@ -235,7 +267,9 @@ TEST_CASE("no redirect leads from the public web to a machine of this network") 
         const std::string message = webError(server.at("/1"), settings);
         CHECK(message.empty() == way.is_followed);
         if (!way.is_followed) {
-            CHECK(contains(message, "leads from the public web to 127.0.0.1, which is on a private network, expected a public server"));
+            CHECK(contains(message,
+                           "leads from the public web to 127.0.0.1, which is on a private network, expected "
+                           "a public server"));
         }
     }
     CHECK(server.asked() == std::vector<std::string>{"/1", "/a.ply", "/1", "/a.ply", "/1", "/a.ply", "/1"});
@@ -250,17 +284,20 @@ TEST_CASE("a scene that began on the public web stays there: in further attempts
     for (const auto& [address, requests] : {std::pair("/a.ply", 1u), std::pair("/a.gltf", 2u)}) {
         WebSettings settings = webSettings(folder);
         settings.fetch.is_private = [servers = 0](const std::string&) mutable { return servers++ > 0; };
-        CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at(address), settings), doctest::Contains("leads from the public web to 127.0.0.1"),
-                             Error);
+        CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at(address), settings),
+                             doctest::Contains("leads from the public web to 127.0.0.1"), Error);
         CHECK(server.asked().size() == requests);
     }
 }
 
-TEST_CASE("through a proxy, servers are judged by the addresses that name them in numbers, and not by the proxy's") {
+TEST_CASE(
+    "through a proxy, servers are judged by the addresses that name them in numbers, and not by the "
+    "proxy's") {
     const Folder folder;
     std::string target;
     const WebServer proxy([&](const WebRequest& request) {
-        return request.path.ends_with("/1") ? answer("302 Found", "Location: " + target + "\r\n") : answer("200 OK", "", kPly);
+        return request.path.ends_with("/1") ? answer("302 Found", "Location: " + target + "\r\n")
+                                            : answer("200 OK", "", kPly);
     });
     const auto fetch = [&](const std::string& first, const std::string& second) {
         const WebSettings settings = webSettings(folder);
@@ -276,8 +313,8 @@ TEST_CASE("through a proxy, servers are judged by the addresses that name them i
     CHECK(fetch("http://10.0.0.1/1", "http://10.0.0.2/a.ply").empty());
     CHECK(fetch("http://localhost/1", "http://[fe80::1]/a.ply").empty());
     CHECK(proxy.asked().size() == 8);
-    for (const std::string within : {"10.0.0.1", "169.254.169.254", "[::1]", "[64:ff9b::a00:1]", "localhost", "LOCALHOST.",
-                                     "a.localhost:99", "0xa.1", "167772161", "10.1:8080"}) {
+    for (const std::string within : {"10.0.0.1", "169.254.169.254", "[::1]", "[64:ff9b::a00:1]", "localhost",
+                                     "LOCALHOST.", "a.localhost:99", "0xa.1", "167772161", "10.1:8080"}) {
         const std::string message = fetch("http://scenes.example/1", fmt::format("http://{}/a.ply", within));
         CHECK_MESSAGE(contains(message, "leads from the public web to "), within);
         CHECK(proxy.asked().back() == "http://scenes.example/1");
@@ -287,19 +324,27 @@ TEST_CASE("through a proxy, servers are judged by the addresses that name them i
 TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
     const Folder folder;
     const Scene scene = loadScene(folder.write("a.ply", kPly));
-    for (const auto& [encoding, window_bits] :
-         {std::pair("gzip", MAX_WBITS + 16), {"x-gzip", MAX_WBITS + 16}, {"deflate", MAX_WBITS}, {"deflate", -MAX_WBITS}}) {
+    for (const auto& [encoding, window_bits] : {std::pair("gzip", MAX_WBITS + 16),
+                                                {"x-gzip", MAX_WBITS + 16},
+                                                {"deflate", MAX_WBITS},
+                                                {"deflate", -MAX_WBITS}}) {
         const std::string packed = deflated(kPly, window_bits);
         const WebServer server([&, &name = encoding](const WebRequest& request) {
-            CHECK(these(request.header("accept-encoding"), request.header("range").empty()) == these("identity", true));
-            WebAnswer given = answer("200 OK", fmt::format("ETag: \"1\"\r\nContent-Encoding: {}\r\n", name), packed);
-            if (request.number == 0) { given = {given.bytes.substr(0, given.bytes.size() - 20), WebAnswer::Then::kClose}; }
+            CHECK(these(request.header("accept-encoding"), request.header("range").empty()) ==
+                  these("identity", true));
+            WebAnswer given =
+                answer("200 OK", fmt::format("ETag: \"1\"\r\nContent-Encoding: {}\r\n", name), packed);
+            if (request.number == 0) {
+                given = {given.bytes.substr(0, given.bytes.size() - 20), WebAnswer::Then::kClose};
+            }
             return given;
         });
         LoadNotes notes;
         checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder), &notes));
         CHECK(server.asked().size() == 2);
-        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "came by http, so others"); }) == 1);
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) {
+                  return contains(line, "came by http, so others");
+              }) == 1);
         std::filesystem::remove_all(folder.file("cache"));
     }
     std::string broken = deflated(kPly, MAX_WBITS + 16);
@@ -307,7 +352,9 @@ TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
     CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be fetched ("));
 }
 
-TEST_CASE("a body that is not packed as the server says, or in no way that is known, is taken as it comes, and resumed") {
+TEST_CASE(
+    "a body that is not packed as the server says, or in no way that is known, is taken as it comes, and "
+    "resumed") {
     const Folder folder;
     const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (const char* encoding : {"aws-chunked", "UTF-8", "gzip", "gzip, unknown"}) {
@@ -317,10 +364,15 @@ TEST_CASE("a body that is not packed as the server says, or in no way that is kn
             WebAnswer given = answer("200 OK", header + "ETag: \"1\"\r\n", kPly);
             if (request.number == 2) {
                 CHECK(request.header("range") == "bytes=300-");
-                return answer("206 Partial Content",
-                              header + fmt::format("ETag: \"1\"\r\nContent-Range: bytes 300-{0}/{0}\r\n", kPly.size()), kPly.substr(300));
+                return answer(
+                    "206 Partial Content",
+                    header + fmt::format("ETag: \"1\"\r\nContent-Range: bytes 300-{0}/{0}\r\n", kPly.size()),
+                    kPly.substr(300));
             }
-            if (request.number == 1) { given = {given.bytes.substr(0, given.bytes.size() - kPly.size() + 300), WebAnswer::Then::kClose}; }
+            if (request.number == 1) {
+                given = {given.bytes.substr(0, given.bytes.size() - kPly.size() + 300),
+                         WebAnswer::Then::kClose};
+            }
             return given;
         });
         WebSettings settings = webSettings(folder);
@@ -329,7 +381,8 @@ TEST_CASE("a body that is not packed as the server says, or in no way that is kn
         CHECK(server.asked().size() == 3);
         std::filesystem::remove_all(folder.file("cache"));
     }
-    CHECK(errorOf(answer("404 Not Found", "Content-Encoding: unknown\r\n", "no such page"), webSettings, 2).starts_with("is not there"));
+    CHECK(errorOf(answer("404 Not Found", "Content-Encoding: unknown\r\n", "no such page"), webSettings, 2)
+              .starts_with("is not there"));
     const auto little = [](const Folder& place) {
         WebSettings settings = webSettings(place);
         settings.fetch.most_bytes = kPly.size() - 1;
@@ -348,9 +401,11 @@ TEST_CASE("a server that falls silent is given up") {
     };
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{200}}) {
         CHECK(errorOf(cutAfter(bytes, WebAnswer::Then::kHang), impatient, 2) ==
-              fmt::format("the server has fallen silent after {} bytes, after 2 attempts; try again later", bytes));
+              fmt::format("the server has fallen silent after {} bytes, after 2 attempts; try again later",
+                          bytes));
     }
-    CHECK(errorOf({"", WebAnswer::Then::kHang}, impatient, 2).starts_with("the server has fallen silent after 0 bytes"));
+    CHECK(errorOf({"", WebAnswer::Then::kHang}, impatient, 2)
+              .starts_with("the server has fallen silent after 0 bytes"));
 }
 
 TEST_CASE("a server that vanishes in the middle of a file, or was never there, is named") {
@@ -362,7 +417,8 @@ TEST_CASE("a server that vanishes in the middle of a file, or was never there, i
     });
     vanish = [&] { server.refuse(); };
     CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "cannot be reached ("));
-    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "look at the network and at the address"));
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)),
+                   "look at the network and at the address"));
     CHECK(server.asked().size() == 1);
     CHECK(filesIn(folder.file("cache")).empty());
 }

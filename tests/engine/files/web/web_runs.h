@@ -16,8 +16,8 @@ inline WebSettings webSettings(const Folder& folder) {
     return settings;
 }
 
-inline Scene loadFromWeb(const std::string& address, const WebSettings& settings, LoadNotes* notes = nullptr, const LevelChoice& level = {},
-                         const Progress& progress = {}) {
+inline Scene loadFromWeb(const std::string& address, const WebSettings& settings, LoadNotes* notes = nullptr,
+                         const LevelChoice& level = {}, const Progress& progress = {}) {
     LoadNotes ignored;
     return loadSceneFromAnywhere(address, 0, notes != nullptr ? *notes : ignored, progress, level, settings);
 }
@@ -39,7 +39,9 @@ inline std::string webError(const std::string& address, const WebSettings& setti
 inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) { names.push_back(entry.path().filename().string()); }
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        names.push_back(entry.path().filename().string());
+    }
     std::ranges::sort(names);
     return names;
 }
@@ -49,7 +51,8 @@ inline WebPages filesOf(const std::filesystem::path& folder, const std::string& 
     WebPages files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) { continue; }
-        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] = textIn(entry.path());
+        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] =
+            textIn(entry.path());
     }
     return files;
 }

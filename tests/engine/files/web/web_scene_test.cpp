@@ -19,12 +19,14 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
 TEST_CASE("an address begins with http or https; a name in its folder cannot lead out of it") {
     CHECK(isAddress("http://a/b.ply"));
     CHECK(isAddress("HTTPS://a"));
-    for (const char* other : {"file:///etc/passwd", "ftp://a/b", "http:/a", "a/http://b", "builtin:fence", "https"}) {
+    for (const char* other :
+         {"file:///etc/passwd", "ftp://a/b", "http:/a", "a/http://b", "builtin:fence", "https"}) {
         CHECK_FALSE(isAddress(other));
     }
     const Address address = parseAddress("https://server:81/a b/c/meta.json?key=1&x#top");
     CHECK(these(address.text, address.folder, address.server) ==
-          these("https://server:81/a%20b/c/meta.json?key=1&x", "https://server:81/a%20b/c/", "https://server:81"));
+          these("https://server:81/a%20b/c/meta.json?key=1&x", "https://server:81/a%20b/c/",
+                "https://server:81"));
     CHECK(addressOf(address, "") == address.text);
     CHECK(addressOf(address, "0/50% ä?#.webp") == "https://server:81/a%20b/c/0/50%25%20%C3%A4%3F%23.webp");
     CHECK(parseAddress("http://server").folder == "http://server/");
@@ -34,35 +36,45 @@ TEST_CASE("an address begins with http or https; a name in its folder cannot lea
         CHECK_THROWS_AS((void)addressOf(address, name), Error);
     }
     const auto parse = [](const std::string& text) { (void)parseAddress(text); };
-    CHECK_THROWS_WITH_AS(parse("http:///a.ply"), "http:///a.ply: names no server, expected https://SERVER/FILE", Error);
+    CHECK_THROWS_WITH_AS(parse("http:///a.ply"),
+                         "http:///a.ply: names no server, expected https://SERVER/FILE", Error);
     for (const std::string rest : {"server/a.ply", "server/a@b.ply?c", "server"}) {
         const std::string host = rest.substr(0, rest.find('/'));
-        CHECK_THROWS_WITH_AS(parse("https://me:sec@ret@" + rest),
-                             ("https://...@" + rest + ": names a user, expected an address that anybody may read").c_str(), Error);
+        CHECK_THROWS_WITH_AS(
+            parse("https://me:sec@ret@" + rest),
+            ("https://...@" + rest + ": names a user, expected an address that anybody may read").c_str(),
+            Error);
     }
     CHECK(parseAddress("https://server/a@b/c.ply").server == "https://server");
-    CHECK_THROWS_WITH_AS(parse("https://server/" + std::string(5000, 'a')), doctest::Contains("at most 4096 bytes"), Error);
+    CHECK_THROWS_WITH_AS(parse("https://server/" + std::string(5000, 'a')),
+                         doctest::Contains("at most 4096 bytes"), Error);
 }
 
 TEST_CASE("machines of this network are told from those of the public web") {
-    for (const std::string& ip :
-         wordsIn("127.0.0.1 10.1.2.3 172.16.0.1 172.31.255.255 192.168.0.1 169.254.169.254 100.64.0.1 0.0.0.0 ::1 :: fe80::1 febf::1 "
-                 "fc00::1 fd12:3456::1 ::ffff:10.0.0.1 ::ffff:a00:1 ::10.0.0.1 ::7f00:1 64:ff9b::10.0.0.1 64:ff9b::a9fe:a9fe "
-                 "64:ff9b:1::c0a8:1 64:ff9b:1:2:3:4:10.0.0.1 2002:7f00:1:: 2002:a00:1:2:3:4:5:6 0:0:0:0:0:0:0:1 fe80::1%eth0")) {
+    for (const std::string& ip : wordsIn("127.0.0.1 10.1.2.3 172.16.0.1 172.31.255.255 192.168.0.1 "
+                                         "169.254.169.254 100.64.0.1 0.0.0.0 ::1 :: fe80::1 febf::1 "
+                                         "fc00::1 fd12:3456::1 ::ffff:10.0.0.1 ::ffff:a00:1 ::10.0.0.1 "
+                                         "::7f00:1 64:ff9b::10.0.0.1 64:ff9b::a9fe:a9fe "
+                                         "64:ff9b:1::c0a8:1 64:ff9b:1:2:3:4:10.0.0.1 2002:7f00:1:: "
+                                         "2002:a00:1:2:3:4:5:6 0:0:0:0:0:0:0:1 fe80::1%eth0")) {
         CHECK_MESSAGE(isPrivateAddress(ip), ip);
     }
-    for (const char* ip : {"8.8.8.8", "172.15.0.1", "172.32.0.1", "192.169.0.1", "169.253.0.1", "100.128.0.1", "2606:4700::1", "fec0::1",
-                           "fb00::1", "::ffff:8.8.8.8", "::ffff:808:808", "64:ff9b::808:808", "64:ff9b:1::8.8.8.8", "64:ff9c::a00:1",
-                           "64:ff9b:2::a00:1", "2002:808:808::a00:1", "2003:a00:1::", "example.org", "10.example.org"}) {
+    for (const char* ip : {"8.8.8.8", "172.15.0.1", "172.32.0.1", "192.169.0.1", "169.253.0.1", "100.128.0.1",
+                           "2606:4700::1", "fec0::1", "fb00::1", "::ffff:8.8.8.8", "::ffff:808:808",
+                           "64:ff9b::808:808", "64:ff9b:1::8.8.8.8", "64:ff9c::a00:1", "64:ff9b:2::a00:1",
+                           "2002:808:808::a00:1", "2003:a00:1::", "example.org", "10.example.org"}) {
         CHECK_FALSE_MESSAGE(isPrivateAddress(ip), ip);
     }
     using Groups = std::array<std::uint16_t, 8>;
     CHECK(these(parseIp("1.2.3.255"), parseIp("::"), parseIp("1::8"), parseIp("::7:8")) ==
-          these(Groups{0, 0, 0, 0, 0, 0xffff, 0x102, 0x3ff}, Groups{}, Groups{1, 0, 0, 0, 0, 0, 0, 8}, Groups{0, 0, 0, 0, 0, 0, 7, 8}));
+          these(Groups{0, 0, 0, 0, 0, 0xffff, 0x102, 0x3ff}, Groups{}, Groups{1, 0, 0, 0, 0, 0, 0, 8},
+                Groups{0, 0, 0, 0, 0, 0, 7, 8}));
     CHECK(these(parseIp("1:2:3:4:5:6:7::"), parseIp("1:2:3:4:5:6:7:fFfF"), parseIp("1::5:6:1.2.3.4%eth0")) ==
-          these(Groups{1, 2, 3, 4, 5, 6, 7, 0}, Groups{1, 2, 3, 4, 5, 6, 7, 0xffff}, Groups{1, 0, 0, 0, 5, 6, 0x102, 0x304}));
+          these(Groups{1, 2, 3, 4, 5, 6, 7, 0}, Groups{1, 2, 3, 4, 5, 6, 7, 0xffff},
+                Groups{1, 0, 0, 0, 5, 6, 0x102, 0x304}));
     std::istringstream others(
-        ": ::: 1 1.2.3 1.2.3.4.5 1.2.3.256 1.2.3. 1.2.3.4. a.b.c.d 1:2:3:4:5:6:7 1:2:3:4:5:6:7:8:9 1:2:3:4:5:6:7:8:: 1::2::3 "
+        ": ::: 1 1.2.3 1.2.3.4.5 1.2.3.256 1.2.3. 1.2.3.4. a.b.c.d 1:2:3:4:5:6:7 1:2:3:4:5:6:7:8:9 "
+        "1:2:3:4:5:6:7:8:: 1::2::3 "
         ":1:2:3:4:5:6:7 1:2:3:4:5:6:7: 12345:: g:: 1.2.3.4:: 1:2:3:4:5:6:7:1.2.3.4 -1:: 1::+2");
     CHECK(!parseIp(""));
     for (std::string none; others >> none;) { CHECK_MESSAGE(!parseIp(none), none); }
@@ -83,7 +95,8 @@ TEST_CASE("a scene at an address is the same as on the disk, whatever its format
     for (const auto& file : files) {
         const std::string& path = file.first;
         CAPTURE(path);
-        const Scene local = loadScene(folder.write("scene", file.second)), far = loadFromWeb(server.at(path), webSettings(folder));
+        const Scene local = loadScene(folder.write("scene", file.second)),
+                    far = loadFromWeb(server.at(path), webSettings(folder));
         checkSameScene(local, far);
         CHECK(far.name == server.at(path));
         CHECK(local.size() > 0);
@@ -91,7 +104,9 @@ TEST_CASE("a scene at an address is the same as on the disk, whatever its format
     CHECK(server.asked().size() == files.size());
 }
 
-TEST_CASE("what a packed scene on the web names beside it is in its archive, or, for one within gzip, beside that") {
+TEST_CASE(
+    "what a packed scene on the web names beside it is in its archive, or, for one within gzip, beside "
+    "that") {
     const Folder folder;
     const std::string gltf = makeGltf().json(R"(,"uri":"a.bin")"), binary = makeGltf().binary();
     const Scene local = loadScene(folder.write("a.glb", makeGltf().glb()));
@@ -106,13 +121,16 @@ TEST_CASE("what a packed scene on the web names beside it is in its archive, or,
 #endif
     const WebServer server(files);
     checkSameScene(local, loadFromWeb(server.at("/a.gltf.gz"), webSettings(folder)));
-    CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/in/a.gltf.gz"), webSettings(folder)), doctest::Contains("/in/a.bin: is not there"),
-                         Error);
+    CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/in/a.gltf.gz"), webSettings(folder)),
+                         doctest::Contains("/in/a.bin: is not there"), Error);
 #ifdef BINOSPLAT_SOG
     checkSameScene(local, loadFromWeb(server.at("/a.zip"), webSettings(folder)));
-    CHECK(contains(webError(server.at("/b.zip"), webSettings(folder)), "b.zip: in/a.bin: not in the archive"));
+    CHECK(
+        contains(webError(server.at("/b.zip"), webSettings(folder)), "b.zip: in/a.bin: not in the archive"));
     const Scene of_sog = loadScene(folder.write("a.sog", makeZip(sog)));
-    for (const char* path : {"/in.zip", "/sog/meta.gz"}) { checkSameScene(of_sog, loadFromWeb(server.at(path), webSettings(folder))); }
+    for (const char* path : {"/in.zip", "/sog/meta.gz"}) {
+        checkSameScene(of_sog, loadFromWeb(server.at(path), webSettings(folder)));
+    }
 #endif
 }
 
@@ -122,7 +140,8 @@ TEST_CASE("the buffers of a glTF scene are fetched from beside it") {
     std::filesystem::create_directory(folder.file("parts"));
     (void)folder.write("parts/a b.bin", binary);
     const WebServer server({{"/in/a.gltf", gltf}, {"/in/parts/a%20b.bin", binary}});
-    checkSameScene(loadScene(folder.write("a.gltf", gltf)), loadFromWeb(server.at("/in/a.gltf"), webSettings(folder)));
+    checkSameScene(loadScene(folder.write("a.gltf", gltf)),
+                   loadFromWeb(server.at("/in/a.gltf"), webSettings(folder)));
     CHECK(server.asked() == std::vector<std::string>{"/in/a.gltf", "/in/parts/a%20b.bin"});
 }
 
@@ -147,27 +166,34 @@ TEST_CASE("a meta.json that names files elsewhere is refused before they are ask
     const Folder folder;
     for (const char* name : {"../l.webp", "http://127.0.0.1/l.webp", "/etc/passwd", "a/l.webp"}) {
         CAPTURE(name);
-        const WebServer server({{"/meta.json", replaced(makeSog()["meta.json"], "\"l.webp\"", fmt::format("\"{}\"", name))}});
-        CHECK(contains(webError(server.at("/meta.json"), webSettings(folder)), "names a file that is not beside it"));
+        const WebServer server(
+            {{"/meta.json", replaced(makeSog()["meta.json"], "\"l.webp\"", fmt::format("\"{}\"", name))}});
+        CHECK(contains(webError(server.at("/meta.json"), webSettings(folder)),
+                       "names a file that is not beside it"));
         CHECK(server.asked().size() == 1);
     }
 }
 
-TEST_CASE("of a streamed scene the files of the level that is read are fetched, bundles or folders, and no others") {
+TEST_CASE(
+    "of a streamed scene the files of the level that is read are fetched, bundles or folders, and no "
+    "others") {
     const Folder folder;
     const std::string path = writeStreamed(folder, "scene", replaced(makeLodMeta(), "a/meta.json", "a.sog"));
     (void)folder.write("scene/a.sog", makeZip(makeChunk(2)));
     for (const std::uint32_t level : {0u, 1u}) {
         const WebServer server(filesOf(path, "/s/"));
         LoadNotes local, far;
-        const Scene scene = loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), &far, {level, {}});
+        const Scene scene =
+            loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), &far, {level, {}});
         checkSameScene(loadScene(path, 0, &local, {}, {level, {}}), scene);
         CHECK(local.level_splats == far.level_splats);
         std::vector<std::string> asked = sorted(server.asked());
-        CHECK(these(std::ranges::adjacent_find(asked), std::ranges::count(asked, "/s/a.sog")) == these(asked.end(), (level == 0 ? 1 : 0)));
+        CHECK(these(std::ranges::adjacent_find(asked), std::ranges::count(asked, "/s/a.sog")) ==
+              these(asked.end(), (level == 0 ? 1 : 0)));
         for (const std::string& name : asked) {
             CAPTURE(name);
-            const bool expected = level == 0 ? name == "/s/a.sog" || name.starts_with("/s/b/") : name.starts_with("/s/c/");
+            const bool expected =
+                level == 0 ? name == "/s/a.sog" || name.starts_with("/s/b/") : name.starts_with("/s/c/");
             CHECK((expected || name.starts_with("/s/env/") || name == "/s/lod-meta.json"));
         }
         std::filesystem::remove_all(folder.file("cache"));
@@ -175,7 +201,8 @@ TEST_CASE("of a streamed scene the files of the level that is read are fetched, 
     // Nothing of a level that cannot fit is fetched.
     const WebServer server(filesOf(path, "/s/"));
     const auto fits = [](std::uint64_t splats, int) { return splats < 16; };
-    CHECK(loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), nullptr, {std::nullopt, fits}).size() == 16);
+    CHECK(loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), nullptr, {std::nullopt, fits})
+              .size() == 16);
     for (const std::string& name : server.asked()) { CHECK_FALSE(name.starts_with("/s/a")); }
     // Without its environment, the scene is shown all the same.
     std::filesystem::remove_all(folder.file("scene/env"));

@@ -33,7 +33,8 @@ struct WebAnswer {
     enum class Then { kGoOn, kClose, kHang } then = Then::kGoOn;
 };
 
-inline WebAnswer answer(const std::string& status, const std::string& headers = "", const std::string& body = "") {
+inline WebAnswer answer(const std::string& status, const std::string& headers = "",
+                        const std::string& body = "") {
     return {fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\n{}\r\n{}", status, body.size(), headers, body)};
 }
 
@@ -41,7 +42,8 @@ inline WebAnswer answer(const std::string& status, const std::string& headers = 
 using WebPages = std::map<std::string, std::string>;
 inline WebAnswer answerFrom(const WebPages& files, const WebRequest& request) {
     const auto found = files.find(request.path);
-    return found != files.end() ? answer("200 OK", "", found->second) : answer("404 Not Found", "", "no such page");
+    return found != files.end() ? answer("200 OK", "", found->second)
+                                : answer("404 Not Found", "", "no such page");
 }
 
 class WebServer {
@@ -49,24 +51,29 @@ public:
     using Handler = std::function<WebAnswer(const WebRequest&)>;
 
     // Each connection has a thread of its own, which calls `handle`.
-    explicit WebServer(Handler handle) : handle_(std::move(handle)), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    explicit WebServer(Handler handle)
+        : handle_(std::move(handle)), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         socklen_t length = sizeof(address);
-        const bool listens = ::bind(listener_, reinterpret_cast<const sockaddr*>(&address), length) == 0 && ::listen(listener_, 64) == 0 &&
+        const bool listens = ::bind(listener_, reinterpret_cast<const sockaddr*>(&address), length) == 0 &&
+                             ::listen(listener_, 64) == 0 &&
                              ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &length) == 0;
         check(listens, "a test's server cannot listen on the loopback address");
         port_ = ntohs(address.sin_port);
         acceptor_ = std::thread([this] { acceptAll(); });
     }
     explicit WebServer(WebPages files)
-        : WebServer([held = std::move(files)](const WebRequest& request) { return answerFrom(held, request); }) {}
+        : WebServer(
+              [held = std::move(files)](const WebRequest& request) { return answerFrom(held, request); }) {}
     WebServer(const WebServer&) = delete;
     WebServer& operator=(const WebServer&) = delete;
     ~WebServer() { stop(); }
 
-    [[nodiscard]] std::string at(const std::string& path) const { return fmt::format("http://127.0.0.1:{}{}", port_, path); }
+    [[nodiscard]] std::string at(const std::string& path) const {
+        return fmt::format("http://127.0.0.1:{}{}", port_, path);
+    }
     // The requested paths, in order.
     [[nodiscard]] std::vector<std::string> asked() const {
         const std::lock_guard lock(mutex_);
@@ -121,7 +128,8 @@ private:
             }
             const WebAnswer given = handle_(*request);
             for (std::size_t sent = 0; sent < given.bytes.size();) {
-                const ssize_t got = ::send(client, given.bytes.data() + sent, given.bytes.size() - sent, MSG_NOSIGNAL);
+                const ssize_t got =
+                    ::send(client, given.bytes.data() + sent, given.bytes.size() - sent, MSG_NOSIGNAL);
                 if (got <= 0) { return; }
                 sent += static_cast<std::size_t>(got);
             }
@@ -152,7 +160,9 @@ private:
             const std::size_t stop = head.find("\r\n", line), colon = head.find(": ", line);
             if (colon < stop) {
                 std::string name = head.substr(line, colon - line);
-                std::ranges::transform(name, name.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+                std::ranges::transform(name, name.begin(), [](unsigned char letter) {
+                    return static_cast<char>(std::tolower(letter));
+                });
                 request.headers[name] = head.substr(colon + 2, stop - colon - 2);
             }
             line = stop + 2;

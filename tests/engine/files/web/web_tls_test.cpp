@@ -12,7 +12,10 @@ SUITE(web_tls) {
 class Beside {
 public:
     Beside(const Folder& folder, const std::string& command)
-        : told_(::popen(fmt::format("cd '{}' && echo $$ && exec timeout --foreground 60 {}", folder.file("."), command).c_str(), "r")) {
+        : told_(::popen(
+              fmt::format("cd '{}' && echo $$ && exec timeout --foreground 60 {}", folder.file("."), command)
+                  .c_str(),
+              "r")) {
         REQUIRE(told_ != nullptr);
         pid_ = std::stoi(lineWith("").value());
     }
@@ -44,7 +47,9 @@ int freePort() {
     return std::stoi(address.substr(address.rfind(':') + 1));
 }
 
-TEST_CASE("a server is refused whose certificate is not valid; one with HTTP/2 sends all files of a scene over one connection") {
+TEST_CASE(
+    "a server is refused whose certificate is not valid; one with HTTP/2 sends all files of a scene over one "
+    "connection") {
     if (!isInstalled("openssl", "openssl") || !isInstalled("nghttpd", "nghttp2-server")) { return; }
     const Folder folder;
     const std::string scene = writeSogFolder(folder, "sog", makeSog());
@@ -55,9 +60,11 @@ TEST_CASE("a server is refused whose certificate is not valid; one with HTTP/2 s
     REQUIRE(std::system(fmt::format("cd '{}' && {}", folder.file("."), make).c_str()) == 0);
     const int port = freePort();
     const std::string address = fmt::format("https://127.0.0.1:{}/meta.json", port);
-    Beside server(folder, fmt::format("nghttpd -v -a 127.0.0.1 -d '{}' {} key.pem own.pem 2> /dev/null", scene, port));
+    Beside server(
+        folder, fmt::format("nghttpd -v -a 127.0.0.1 -d '{}' {} key.pem own.pem 2> /dev/null", scene, port));
     REQUIRE(server.lineWith("listen 127.0.0.1"));
-    CHECK(webError(address, webSettings(folder)).starts_with(address + ": the server's certificate is not valid ("));
+    CHECK(webError(address, webSettings(folder))
+              .starts_with(address + ": the server's certificate is not valid ("));
     // When issued by an authority that the user trusts, it is accepted.
     setEnvironment("SSL_CERT_FILE", folder.file("own.pem"));
     checkSameScene(loadScene(scene), loadFromWeb(address, webSettings(folder)));

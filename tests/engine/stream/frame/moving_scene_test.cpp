@@ -13,7 +13,9 @@ constexpr double kRate = 10.0;
 
 std::array<Eye, 2> atelierEyes() {
     const View view = *builtinView("atelier");
-    return stereoPair({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), {160, 160}), {160, 160}},
+    return stereoPair({lookAt(view.eye, view.look, view.up),
+                       intrinsicsFromFovX(glm::radians(view.fov_x_deg), {160, 160}),
+                       {160, 160}},
                       0.063);
 }
 
@@ -69,14 +71,19 @@ struct Sliding : Gpu {
     Sliding() { writeSliding(folder.file("slide"), kFrames); }
     [[nodiscard]] std::unique_ptr<MovingScene> open(MovingSettings settings = {}) const {
         settings.rate_hz = kRate;
-        return std::make_unique<MovingScene>(context(), SceneSeries(folder.file("slide")), std::move(settings));
+        return std::make_unique<MovingScene>(context(), SceneSeries(folder.file("slide")),
+                                             std::move(settings));
     }
-    [[nodiscard]] std::string fileOf(int frame) const { return folder.file(fmt::format("slide/frame_{:04}.ply", frame + 1)); }
+    [[nodiscard]] std::string fileOf(int frame) const {
+        return folder.file(fmt::format("slide/frame_{:04}.ply", frame + 1));
+    }
 
     Folder folder;
 };
 
-TEST_CASE_FIXTURE(Sliding, "each frame of a moving scene is, to the bit, its file; before the first and after the last it begins again") {
+TEST_CASE_FIXTURE(Sliding,
+                  "each frame of a moving scene is, to the bit, its file; before the first and after the "
+                  "last it begins again") {
     const auto moving = open();
     CHECK(moving->seconds() == doctest::Approx(kFrames / kRate));
     KeptFrame frame(context(), moving->scene());
@@ -85,11 +92,12 @@ TEST_CASE_FIXTURE(Sliding, "each frame of a moving scene is, to the bit, its fil
         moving->setTime(timeOf(at));
         CHECK(moving->frameAt(timeOf(at)) == static_cast<std::size_t>((at + kFrames) % kFrames));
         moving->settle({});
-        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf((at + kFrames) % kFrames))).values);
+        CHECK(pictureOf(frame).values ==
+              pictureOf(context(), loadScene(fileOf((at + kFrames) % kFrames))).values);
     }
     CHECK(moving->isSettled());
-    CHECK(these(moving->counters().scene_frames_late, moving->counters().splats_read, moving->takeLines(Waits::kBriefly).empty()) ==
-          these(0, 8000, true));
+    CHECK(these(moving->counters().scene_frames_late, moving->counters().splats_read,
+                moving->takeLines(Waits::kBriefly).empty()) == these(0, 8000, true));
 }
 
 TEST_CASE_FIXTURE(Sliding, "between two frames there is what lies between their splats, if asked for") {
@@ -114,17 +122,20 @@ TEST_CASE_FIXTURE(Sliding, "frames go on while the next is read, which is late a
         for (const double at : {0.5, 1.5, 2.5, 4.5, 7.5}) {
             moving->setTime(at / kRate);
             updateUntil(*moving, [&] {
-                return moving->frameAt(at / kRate) == static_cast<std::size_t>(at) % kFrames && (pictureOf(frame), moving->isSettled());
+                return moving->frameAt(at / kRate) == static_cast<std::size_t>(at) % kFrames &&
+                       (pictureOf(frame), moving->isSettled());
             });
             const int shown = static_cast<int>(at) % kFrames;
-            CHECK(compare(pictureOf(frame), pictureOf(context(), slidingAtelier(blend ? shown + 0.5 : shown))).psnrDb() > 60.0);
+            CHECK(compare(pictureOf(frame), pictureOf(context(), slidingAtelier(blend ? shown + 0.5 : shown)))
+                      .psnrDb() > 60.0);
         }
         CHECK(moving->counters().frames_waited_for_loading == 0);
         CHECK(moving->counters().scene_frames_late <= 4);
     }
 }
 
-TEST_CASE_FIXTURE(Sliding, "a frame that is not there in time is late, counted once, and shown when it comes") {
+TEST_CASE_FIXTURE(Sliding,
+                  "a frame that is not there in time is late, counted once, and shown when it comes") {
     std::atomic<bool> holds = false;
     MovingSettings settings;
     settings.memory_bytes = 1;  // only the next ones
@@ -148,7 +159,9 @@ TEST_CASE_FIXTURE(Sliding, "a frame that is not there in time is late, counted o
     CHECK(moving->counters().scene_frames_late == 1);
 }
 
-TEST_CASE_FIXTURE(Sliding, "in place of a broken frame the one before stays, and one line says so; pictures are not made of it") {
+TEST_CASE_FIXTURE(
+    Sliding,
+    "in place of a broken frame the one before stays, and one line says so; pictures are not made of it") {
     std::ofstream(fileOf(2), std::ios::binary | std::ios::trunc) << "ply\nbroken";
     const auto moving = open();
     KeptFrame frame(context(), moving->scene());
@@ -212,7 +225,9 @@ TEST_CASE_FIXTURE(Sliding, "what stays equal costs pictures that are made from t
     CHECK(still->scene().changesRecorded() == before);
 }
 
-TEST_CASE_FIXTURE(Gpu, "where most of the picture changes both eyes are rendered in full, and the frames after it have histories again") {
+TEST_CASE_FIXTURE(Gpu,
+                  "where most of the picture changes both eyes are rendered in full, and the frames after it "
+                  "have histories again") {
     const Folder folder;
     writeFilm(folder.file("film"), 3, [](int frame) { return shakenAtelier(frame, 2); });
     MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
@@ -227,12 +242,17 @@ TEST_CASE_FIXTURE(Gpu, "where most of the picture changes both eyes are rendered
         const FrameResult result = temporal.render(stereoPair(eye, 0.063), settingsOf(Mode::kTemporal, true));
         const FrameResult full = other.render(stereoPair(eye, 0.063), settingsOf(Mode::kShared));
         const bool has_history = at != 0.0 && at != 2.0;
-        for (const int e : {kLeft, kRight}) { CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_history); }
-        CHECK((result.counters.targets[kLeft].tile_pairs == full.counters.targets[kLeft].tile_pairs) == !has_history);
+        for (const int e : {kLeft, kRight}) {
+            CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_history);
+        }
+        CHECK((result.counters.targets[kLeft].tile_pairs == full.counters.targets[kLeft].tile_pairs) ==
+              !has_history);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it is less or more than a history is kept for") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "frames under way have room for what changes, whether it is less or more than a history is kept for") {
     const Folder folder;
     writeFilm(folder.file("film"), 9, [](int frame) { return shakenAtelier(frame, 5); });
     MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
@@ -256,7 +276,9 @@ TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it 
     CHECK(shownBy(ahead) == shownBy(waited));
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that changes make a full one waits for room, however much more it needs than the patch before") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "a frame that changes make a full one waits for room, however much more it needs than the patch before") {
     const Folder folder;
     writeFilm(folder.file("film"), 3, [](int frame) {
         Scene scene = shakenAtelier(0, 2);

@@ -17,8 +17,10 @@ constexpr std::uint64_t kSplats = 40'000;
 std::array<Eye, 2> atelierEyes(std::uint32_t side_px = 256, double yaw_rad = 0.0) {
     const View view = *builtinView("atelier");
     const glm::uvec2 size_px(side_px);
-    Eye middle{lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
-    middle.world_from_camera.orientation = glm::angleAxis(yaw_rad, glm::dvec3(0.0, 1.0, 0.0)) * middle.world_from_camera.orientation;
+    Eye middle{lookAt(view.eye, view.look, view.up),
+               intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
+    middle.world_from_camera.orientation =
+        glm::angleAxis(yaw_rad, glm::dvec3(0.0, 1.0, 0.0)) * middle.world_from_camera.orientation;
     return stereoPair(middle, 0.063);
 }
 
@@ -27,7 +29,8 @@ std::string writtenAtelier() {
     static const Workplace place;
     const std::string folder = (place.path / "split").string();
     if (place.isEmpty()) {
-        splitScene(makeBuiltin("builtin:atelier", kSplats), folder, {.leaf_splats = 1000, .levels = 4, .chunk_splats = 8000});
+        splitScene(makeBuiltin("builtin:atelier", kSplats), folder,
+                   {.leaf_splats = 1000, .levels = 4, .chunk_splats = 8000});
     }
     return folder;
 }
@@ -39,7 +42,9 @@ FrameSettings inFull() {
 }
 
 struct Streamed : Gpu {
-    [[nodiscard]] std::unique_ptr<SceneStream> open(const StreamSettings& settings = {}) const { return open(source, settings); }
+    [[nodiscard]] std::unique_ptr<SceneStream> open(const StreamSettings& settings = {}) const {
+        return open(source, settings);
+    }
     [[nodiscard]] std::unique_ptr<SceneStream> open(const std::string& from, const StreamSettings& settings,
                                                     const WebSettings& web = {}) const {
         return std::make_unique<SceneStream>(context(), std::make_unique<ChunkSource>(from, web), settings);
@@ -53,7 +58,8 @@ struct Streamed : Gpu {
     }
     // Renders until nothing changes any more.
     template <typename PerFrame>
-    void showUntilSettled(SceneStream& stream, StereoFrame& frame, std::span<const Eye> seen, const PerFrame& per_frame) const {
+    void showUntilSettled(SceneStream& stream, StereoFrame& frame, std::span<const Eye> seen,
+                          const PerFrame& per_frame) const {
         for (int frames = 0; frames < 100'000; ++frames) {
             stream.update(seen, 0.05);
             per_frame(frame.render(seen, full));
@@ -69,7 +75,9 @@ struct Streamed : Gpu {
     FrameSettings full = inFull();
 };
 
-TEST_CASE_FIXTURE(Streamed, "with room for all of it a view shows what the whole scene shows; within a budget, the nearer the more") {
+TEST_CASE_FIXTURE(
+    Streamed,
+    "with room for all of it a view shows what the whole scene shows; within a budget, the nearer the more") {
     const Image whole = pictureOf(loadScene(source));
     const auto within = [&](const StreamSettings& settings) {
         const auto stream = open(settings);
@@ -80,7 +88,9 @@ TEST_CASE_FIXTURE(Streamed, "with room for all of it a view shows what the whole
     const Image few = within({.splat_budget = kSplats / 8 + 64, .look_ahead_rad = 0.1}),
                 more = within({.splat_budget = kSplats / 4, .look_ahead_rad = 0.1}),
                 many = within({.splat_budget = kSplats / 2, .look_ahead_rad = 0.1}),
-                again = within({.splat_budget = kSplats / 2, .look_ahead_rad = 0.1, .loader = {.threads = 1, .kept_files = 0}});
+                again = within({.splat_budget = kSplats / 2,
+                                .look_ahead_rad = 0.1,
+                                .loader = {.threads = 1, .kept_files = 0}});
     CHECK(again.values == many.values);
     CHECK(compare(few, whole).psnrDb() < compare(more, whole).psnrDb());
     CHECK(compare(more, whole).psnrDb() < compare(many, whole).psnrDb());
@@ -94,25 +104,31 @@ TEST_CASE_FIXTURE(Streamed, "with room for all of it a view shows what the whole
           these(stream->counters().splats_resident, true));
 }
 
-TEST_CASE_FIXTURE(Streamed, "frames go on while levels come: the coarsest of all first, then what the eyes ask for, as if waited for") {
+TEST_CASE_FIXTURE(Streamed,
+                  "frames go on while levels come: the coarsest of all first, then what the eyes ask for, as "
+                  "if waited for") {
     const auto stream = open({.splat_budget = kSplats / 2}), waited = open({.splat_budget = kSplats / 2});
     KeptFrame frame(context(), stream->scene());
     eyes = atelierEyes(96);
     bool coarse_is_whole = false;
     showUntilSettled(*stream, frame, eyes, [&](const FrameResult& result) {
         const StreamCounters counters = stream->counters();
-        if (counters.chunks_resident > 64) { CHECK((coarse_is_whole || counters.splats_resident >= kSplats / 8)); }
+        if (counters.chunks_resident > 64) {
+            CHECK((coarse_is_whole || counters.splats_resident >= kSplats / 8));
+        }
         coarse_is_whole = coarse_is_whole || counters.chunks_resident >= 64;
         CHECK(result.counters.splats_read <= kSplats);
         CHECK(counters.frames_waited_for_loading == 0);
     });
     waited->settle(eyes);
-    CHECK(these(stream->counters().splats_read, stream->counters().chunks_resident) == these(waited->counters().splats_resident, 64));
+    CHECK(these(stream->counters().splats_read, stream->counters().chunks_resident) ==
+          these(waited->counters().splats_resident, 64));
     CHECK(compare(pictureOf(stream->scene()), pictureOf(waited->scene())).psnrDb() > 60.0);
     // All the way round and back: nothing is left over.
     for (const double yaw : {1.5, 3.0, 4.5, 0.0}) {
-        showUntilSettled(*stream, frame, atelierEyes(96, yaw),
-                         [&](const FrameResult& result) { CHECK(result.counters.splats_read <= 2 * kSplats); });
+        showUntilSettled(*stream, frame, atelierEyes(96, yaw), [&](const FrameResult& result) {
+            CHECK(result.counters.splats_read <= 2 * kSplats);
+        });
         CHECK(stream->counters().splats_read <= kSplats / 2);
         CHECK(stream->counters().chunks_resident == 64);
     }
@@ -141,7 +157,8 @@ TEST_CASE_FIXTURE(Streamed, "where a chunk is missing the coarser level stays, a
 }
 
 #ifdef BINOSPLAT_WEB_TESTS
-TEST_CASE_FIXTURE(Streamed, "a scene at an address shows what its folder shows, and again when its server is gone") {
+TEST_CASE_FIXTURE(Streamed,
+                  "a scene at an address shows what its folder shows, and again when its server is gone") {
     const auto local = open();
     local->settle(eyes);
     const Image expected = pictureOf(local->scene());
@@ -159,7 +176,9 @@ TEST_CASE_FIXTURE(Streamed, "a scene at an address shows what its folder shows, 
     }
 }
 
-TEST_CASE_FIXTURE(Streamed, "whatever a server does to a chunk, the coarser level stays until it comes, and one line says what is wrong") {
+TEST_CASE_FIXTURE(Streamed,
+                  "whatever a server does to a chunk, the coarser level stays until it comes, and one line "
+                  "says what is wrong") {
     const WebPages files = filesOf(source);
     const auto local = open();
     local->settle(eyes);

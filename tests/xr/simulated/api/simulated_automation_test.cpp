@@ -22,7 +22,8 @@ struct AutomationFixture : SessionFixture {
     XrAction grip = makeAction(set, "grip", XR_ACTION_TYPE_POSE_INPUT, {left, right});
 
     AutomationFixture()
-        : SessionFixture("size 64 64\nframes none\naxis left trigger 0 0.25\n", {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}) {
+        : SessionFixture("size 64 64\nframes none\naxis left trigger 0 0.25\n",
+                         {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}) {
         REQUIRE(suggest(kTouch, {{jump, path("/user/hand/left/input/x/click")},
                                  {jump, path("/user/hand/right/input/a/click")},
                                  {pull, path("/user/hand/left/input/trigger/value")},
@@ -42,7 +43,9 @@ struct AutomationFixture : SessionFixture {
         XrEventDataBuffer event;
         return poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED;
     }
-    void switchTo(bool active, XrPath hand) const { REQUIRE(setActive(session, path(kTouch), hand, active) == XR_SUCCESS); }
+    void switchTo(bool active, XrPath hand) const {
+        REQUIRE(setActive(session, path(kTouch), hand, active) == XR_SUCCESS);
+    }
 };
 
 // A space for the pose that is bound for both hands, which names neither.
@@ -112,13 +115,15 @@ private:
 // The answer to whether the headset tracks eyes; 7 if there is none.
 XrBool32 supportsGaze(const std::string& script, const Extensions& extensions) {
     const InstanceFixture made(kQuietScript + script, extensions);
-    XrSystemEyeGazeInteractionPropertiesEXT eyes{XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, nullptr, 7};
+    XrSystemEyeGazeInteractionPropertiesEXT eyes{XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, nullptr,
+                                                 7};
     XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &eyes};
     REQUIRE(xrGetSystemProperties(made.instance, made.system, &properties) == XR_SUCCESS);
     return eyes.supportsEyeGazeInteraction;
 }
 
-TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
+TEST_CASE_FIXTURE(AutomationFixture,
+                  "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
     synchronize();
     CHECK(setFloat(session, right, path("/user/hand/right/input/trigger/value"), 0.75f) == XR_SUCCESS);
     CHECK(number(pull, right).currentState == 0);
@@ -129,7 +134,8 @@ TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncA
     CHECK(setLocation(session, left, path("/user/hand/left/input/grip/pose"), local, pose) == XR_SUCCESS);
     synchronize();
     const XrSpace stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
-    checkNear(locate(makeActionSpace(grip, left), stage, waitFrame().predictedDisplayTime).pose.position, {1, 3.6f, 3});
+    checkNear(locate(makeActionSpace(grip, left), stage, waitFrame().predictedDisplayTime).pose.position,
+              {1, 3.6f, 3});
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and are switched off") {
@@ -157,20 +163,26 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
     CHECK(profileOf(gamepad) == kXbox);
     CHECK(boolean(jump, gamepad).currentState == XR_TRUE);
     // A profile for which the program has no bindings.
-    CHECK(setActive(session, path("/interaction_profiles/valve/index_controller"), right, XR_TRUE) == XR_SUCCESS);
+    CHECK(setActive(session, path("/interaction_profiles/valve/index_controller"), right, XR_TRUE) ==
+          XR_SUCCESS);
     synchronize();
     CHECK(profileOf(right) == "none");
     CHECK(boolean(jump, right).isActive == XR_FALSE);
 }
 
-TEST_CASE("a pose of either hand is that of one that is there, stays though it is put down, and goes to one that is synchronized") {
+TEST_CASE(
+    "a pose of either hand is that of one that is there, stays though it is put down, and goes to one that "
+    "is synchronized") {
     // Whether the left hand is put down or taken up; which hand is synchronized, if not both; and whose pose
     // it is then.
     using Step = std::array<std::string, 3>;
-    for (const std::vector<Step>& steps :
-         {std::vector<Step>{{"down", "", "right"}, {"up", "", "right"}},
-          {{"", "", "left"}, {"down", "", "nobody"}, {"up", "", "left"}},
-          {{"", "left", "left"}, {"", "right", "right"}, {"", "", "right"}, {"down", "left", "nobody"}, {"", "", "right"}}}) {
+    for (const std::vector<Step>& steps : {std::vector<Step>{{"down", "", "right"}, {"up", "", "right"}},
+                                           {{"", "", "left"}, {"down", "", "nobody"}, {"up", "", "left"}},
+                                           {{"", "left", "left"},
+                                            {"", "right", "right"},
+                                            {"", "", "right"},
+                                            {"down", "left", "nobody"},
+                                            {"", "", "right"}}}) {
         const EitherHandFixture made;
         for (const auto& [left, synchronized, followed] : steps) {
             INFO(left, " ", synchronized);
@@ -183,32 +195,40 @@ TEST_CASE("a pose of either hand is that of one that is there, stays though it i
 
 TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profile lacks") {
     synchronize();
-    const XrPath trigger = path("/user/hand/right/input/trigger/value"), left_grip = path("/user/hand/left/input/grip/pose");
-    CHECK(setFloat(session, right, path("/user/hand/right/input/nose/value"), 1) == XR_ERROR_PATH_UNSUPPORTED);
+    const XrPath trigger = path("/user/hand/right/input/trigger/value"),
+                 left_grip = path("/user/hand/left/input/grip/pose");
+    CHECK(setFloat(session, right, path("/user/hand/right/input/nose/value"), 1) ==
+          XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setFloat(session, left, trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setFloat(session, path("/user/treadmill"), trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
-    checkEach(XR_ERROR_PATH_INVALID, {setFloat(session, XR_NULL_PATH, trigger, 1), setFloat(session, right, 123456, 1)});
+    checkEach(XR_ERROR_PATH_INVALID,
+              {setFloat(session, XR_NULL_PATH, trigger, 1), setFloat(session, right, 123456, 1)});
     CHECK(setFloat(session, right, trigger, NAN) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(setFloat(XR_NULL_HANDLE, right, trigger, 1) == XR_ERROR_HANDLE_INVALID);
     CHECK(setVector(session, right, trigger, {0, 0}) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setActive(session, path(kSimple), right, XR_TRUE) == XR_SUCCESS);
     CHECK(setFloat(session, right, trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setActive(session, path(kXbox), right, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setActive(session, path("/interaction_profiles/nobody/nothing"), right, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(setActive(session, path("/interaction_profiles/nobody/nothing"), right, XR_TRUE) ==
+          XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setActive(session, XR_NULL_PATH, right, XR_TRUE) == XR_ERROR_PATH_INVALID);
     CHECK(setLocation(session, left, trigger, local, kIdentity) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setLocation(session, left, path("/user/hand/left/input/trigger/value"), local, kIdentity) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(setLocation(session, left, path("/user/hand/left/input/trigger/value"), local, kIdentity) ==
+          XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setLocation(session, left, left_grip, XR_NULL_HANDLE, kIdentity) == XR_ERROR_HANDLE_INVALID);
     CHECK(setLocation(session, left, left_grip, local, {{0, 0, 0, 0}, {0, 0, 0}}) == XR_ERROR_POSE_INVALID);
 }
 
 TEST_CASE("the headset says whether it tracks eyes, to whoever enabled the extension") {
     const Extensions enabled = withGaze({});
-    for (const char* script : {"", "eye-tracking on\n", "eye-tracking refused\n"}) { CHECK(supportsGaze(script, enabled) == XR_TRUE); }
+    for (const char* script : {"", "eye-tracking on\n", "eye-tracking refused\n"}) {
+        CHECK(supportsGaze(script, enabled) == XR_TRUE);
+    }
     CHECK(these(supportsGaze("eye-tracking off\n", enabled), supportsGaze("", {})) == these(XR_FALSE, 7));
     // Actions may name the eyes among their subaction paths.
     const InstanceFixture made(kQuietScript, enabled);
-    made.makeAction(made.makeActionSet("looking"), "look", XR_ACTION_TYPE_POSE_INPUT, {made.path("/user/eyes_ext")});
+    made.makeAction(made.makeActionSet("looking"), "look", XR_ACTION_TYPE_POSE_INPUT,
+                    {made.path("/user/eyes_ext")});
 }
 
 TEST_CASE("the gaze goes where the script says, from between the eyes, with the time of its sample") {
@@ -217,7 +237,8 @@ TEST_CASE("the gaze goes where the script says, from between the eyes, with the 
     CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.yaw()) ==
           these(true, (kValid | kTracked), doctest::Approx(0).epsilon(0.001)));
     gaze = made.at(0.2);
-    CHECK(std::asin(std::sin(gaze.yaw() / 57.29578) / std::cos(-5 / 57.29578)) * 57.29578 == doctest::Approx(10).epsilon(0.001));
+    CHECK(std::asin(std::sin(gaze.yaw() / 57.29578) / std::cos(-5 / 57.29578)) * 57.29578 ==
+          doctest::Approx(10).epsilon(0.001));
     CHECK(gaze.pitch() == doctest::Approx(-5).epsilon(0.001));
     const XrVector3f& place = gaze.location.pose.position;
     CHECK(std::abs(place.x) + std::abs(place.y) + std::abs(place.z) < 1e-6f);
@@ -231,8 +252,11 @@ TEST_CASE("the gaze goes where the script says, from between the eyes, with the 
     CHECK(made.profileOf(made.path("/user/eyes_ext")) == kEyes);
 }
 
-TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever else is located has no sample") {
-    GazeFixture made("at 0.1 gaze off\nat 0.2 gaze degraded\nat 0.3 gaze on\nat 0.4 head off\nat 0.5 head turn-only\nat 0.6 focused off\n");
+TEST_CASE(
+    "a gaze may be lost, found again, and be too poor to rely on; whatever else is located has no sample") {
+    GazeFixture made(
+        "at 0.1 gaze off\nat 0.2 gaze degraded\nat 0.3 gaze on\nat 0.4 head off\nat 0.5 head turn-only\nat "
+        "0.6 focused off\n");
     CHECK(made.at(0.05).is_active);
     Gaze gaze = made.at(0.15);
     CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.sampled) == these(false, 0, 0));
@@ -249,7 +273,8 @@ TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever
     // A lost or poor gaze still has a location in its own space, but only a tracked gaze has a sample.
     for (const double time_s : {0.15, 0.25}) {
         gaze = made.read(kStart + std::lround(time_s * 1e9), made.gaze_space);
-        CHECK(these(gaze.location.locationFlags, (gaze.sampled > 0)) == these((kValid | kTracked), (time_s > 0.2)));
+        CHECK(these(gaze.location.locationFlags, (gaze.sampled > 0)) ==
+              these((kValid | kTracked), (time_s > 0.2)));
     }
 
     XrEyeGazeSampleTimeEXT sample{XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT, nullptr, 77};
@@ -265,7 +290,8 @@ TEST_CASE("a wearer who refuses, and a headset without a tracker, leave the gaze
         GazeFixture made(script);
         const Gaze gaze = made.at(0.1);
         CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.sampled) == these(false, 0, 0));
-        CHECK((made.profileOf(made.path("/user/eyes_ext")) != "none") == (script == "eye-tracking refused\n"));
+        CHECK((made.profileOf(made.path("/user/eyes_ext")) != "none") ==
+              (script == "eye-tracking refused\n"));
     }
 }
 
@@ -278,7 +304,8 @@ TEST_CASE("a program's own test moves the gaze from inside") {
     // 45 degrees to the left.
     const XrPosef left{{0, std::sin(0.3926991f), 0, std::cos(0.3926991f)}, {0, 0, 0}};
     CHECK(setLocation(made.session, eyes, gaze, made.view, left) == XR_SUCCESS);
-    CHECK(setLocation(made.session, eyes, made.path("/user/eyes_ext/input/aim/pose"), made.view, left) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(setLocation(made.session, eyes, made.path("/user/eyes_ext/input/aim/pose"), made.view, left) ==
+          XR_ERROR_PATH_UNSUPPORTED);
     CHECK(made.at(0.2).yaw() == doctest::Approx(45).epsilon(0.001));
     CHECK(setActive(made.session, made.path(kEyes), eyes, XR_FALSE) == XR_SUCCESS);
     CHECK_FALSE(made.at(0.3).is_active);

@@ -59,9 +59,13 @@ void checkArguments(Function call, Handle handle, Places*... places) {
     CHECK(answer(XR_NULL_HANDLE, places...) == XR_ERROR_HANDLE_INVALID);
     std::tuple<Places*...> all{places...};
     const auto checkOne = [&](auto& place) {
-        const auto again = [&] { return std::apply([&](Places*... to) { return answer(handle, to...); }, all); };
+        const auto again = [&] {
+            return std::apply([&](Places*... to) { return answer(handle, to...); }, all);
+        };
         CHECK(with(place, nullptr, again) == XR_ERROR_VALIDATION_FAILURE);
-        if constexpr (requires { place->type; }) { CHECK(with(place->type, XR_TYPE_UNKNOWN, again) == XR_ERROR_VALIDATION_FAILURE); }
+        if constexpr (requires { place->type; }) {
+            CHECK(with(place->type, XR_TYPE_UNKNOWN, again) == XR_ERROR_VALIDATION_FAILURE);
+        }
     };
     std::apply([&](auto&... place) { (checkOne(place), ...); }, all);
 }
@@ -80,13 +84,15 @@ std::vector<Value> checkList(const List& list, const Value& blank = {}) {
     CHECK(count == values.size());
     CHECK(list(count, &count, values.data()) == XR_SUCCESS);
     if constexpr (requires { values[0].type; }) {
-        CHECK(with(values.back().type, XR_TYPE_UNKNOWN, [&] { return list(count, &count, values.data()); }) == XR_ERROR_VALIDATION_FAILURE);
+        CHECK(with(values.back().type, XR_TYPE_UNKNOWN, [&] { return list(count, &count, values.data()); }) ==
+              XR_ERROR_VALIDATION_FAILURE);
     }
     return values;
 }
 
 inline void checkNear(const XrVector3f& found, const XrVector3f& expected) {
-    CHECK(these(found.x, found.y, found.z) == these(doctest::Approx(expected.x), doctest::Approx(expected.y), doctest::Approx(expected.z)));
+    CHECK(these(found.x, found.y, found.z) ==
+          these(doctest::Approx(expected.x), doctest::Approx(expected.y), doctest::Approx(expected.z)));
 }
 
 }  // namespace binosplat::test

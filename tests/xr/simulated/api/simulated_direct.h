@@ -34,7 +34,8 @@ public:
     XrVersion api = 0;
 
     Direct() {
-        const auto path = std::filesystem::path(BINOSPLAT_SIMULATED_RUNTIME).parent_path() / "libbinosplat_simulated_runtime.so";
+        const auto path = std::filesystem::path(BINOSPLAT_SIMULATED_RUNTIME).parent_path() /
+                          "libbinosplat_simulated_runtime.so";
         library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
         REQUIRE(library != nullptr);
         negotiate = reinterpret_cast<Negotiate>(dlsym(library, "xrNegotiateLoaderRuntimeInterface"));
@@ -61,7 +62,8 @@ struct DirectInstance : Direct, InstanceFixture {
 
 struct HeadlessSession : DirectInstance {
     HeadlessSession(XrVersion version, Extensions extensions, const std::string& script = kQuietScript)
-        : DirectInstance(version, (extensions.push_back(XR_MND_HEADLESS_EXTENSION_NAME), extensions), script) {
+        : DirectInstance(version, (extensions.push_back(XR_MND_HEADLESS_EXTENSION_NAME), extensions),
+                         script) {
         const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, nullptr, 0, system};
         REQUIRE(XR(xrCreateSession)(instance, &info, &session) == XR_SUCCESS);
     }

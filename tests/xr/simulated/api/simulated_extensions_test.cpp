@@ -8,7 +8,8 @@ std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'
 
 std::vector<bool> presences(const HeadlessSession& made) {
     std::vector<bool> found;
-    for (const auto& change : made.events<XrEventDataUserPresenceChangedEXT>(XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT)) {
+    for (const auto& change :
+         made.events<XrEventDataUserPresenceChangedEXT>(XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT)) {
         CHECK(change.session == made.session);
         found.push_back(change.isUserPresent == XR_TRUE);
     }
@@ -21,12 +22,15 @@ struct Hand {
     XrHandTrackerEXT tracker = XR_NULL_HANDLE;
     XrHandJointLocationEXT joints[XR_HAND_JOINT_COUNT_EXT];
     XrHandJointVelocityEXT speeds[XR_HAND_JOINT_COUNT_EXT];
-    XrHandJointVelocitiesEXT velocities{XR_TYPE_HAND_JOINT_VELOCITIES_EXT, nullptr, XR_HAND_JOINT_COUNT_EXT, speeds};
-    XrHandJointLocationsEXT locations{XR_TYPE_HAND_JOINT_LOCATIONS_EXT, &velocities, XR_TRUE, XR_HAND_JOINT_COUNT_EXT, joints};
+    XrHandJointVelocitiesEXT velocities{XR_TYPE_HAND_JOINT_VELOCITIES_EXT, nullptr, XR_HAND_JOINT_COUNT_EXT,
+                                        speeds};
+    XrHandJointLocationsEXT locations{XR_TYPE_HAND_JOINT_LOCATIONS_EXT, &velocities, XR_TRUE,
+                                      XR_HAND_JOINT_COUNT_EXT, joints};
     XrHandJointsLocateInfoEXT where{XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT};
 
     Hand(const HeadlessSession& session, XrHandEXT side) : made(session) {
-        const XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, side, XR_HAND_JOINT_SET_DEFAULT_EXT};
+        const XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, side,
+                                              XR_HAND_JOINT_SET_DEFAULT_EXT};
         REQUIRE(made.XR(xrCreateHandTrackerEXT)(made.session, &info, &tracker) == XR_SUCCESS);
         where.baseSpace = made.makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
     }
@@ -67,7 +71,8 @@ struct Everything : HeadlessSession {
         {"tracker", {"session", [&] { return XR(xrDestroyHandTrackerEXT)(tracker); }}},
     };
 
-    explicit Everything(bool attaches) : HeadlessSession(k1_1, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME}) {
+    explicit Everything(bool attaches)
+        : HeadlessSession(k1_1, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME}) {
         const XrDebugUtilsMessengerCreateInfoEXT info{
             XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr,
             XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
@@ -83,7 +88,9 @@ struct Everything : HeadlessSession {
         XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
         CHECK(XR_SUCCEEDED(XR(xrPollEvent)(instance, &event)));
         if (!gone.contains("session")) { CHECK(XR_SUCCEEDED(sync())); }
-        if (!gone.contains("reference space") && !gone.contains("action space")) { locate(action_space, reference_space, kStart); }
+        if (!gone.contains("reference space") && !gone.contains("action space")) {
+            locate(action_space, reference_space, kStart);
+        }
     }
 };
 
@@ -107,8 +114,10 @@ TEST_CASE("time is converted to CLOCK_MONOTONIC and back") {
         CHECK(toTimespec(made.instance, bad, &back) == XR_ERROR_TIME_INVALID);
     }
     checkArguments(toTime, made.instance, &now, &time);
-    checkArguments([&](XrInstance of, timespec* place) { return toTimespec(of, time, place); }, made.instance, &back);
-    for (const timespec bad : {timespec{0, 0}, timespec{-1, 0}, timespec{now.tv_sec, 1'000'000'000}, timespec{now.tv_sec, -1}}) {
+    checkArguments([&](XrInstance of, timespec* place) { return toTimespec(of, time, place); }, made.instance,
+                   &back);
+    for (const timespec bad :
+         {timespec{0, 0}, timespec{-1, 0}, timespec{now.tv_sec, 1'000'000'000}, timespec{now.tv_sec, -1}}) {
         CHECK(toTime(made.instance, &bad, &time) == XR_ERROR_TIME_INVALID);
     }
 }
@@ -130,11 +139,14 @@ TEST_CASE("with the real clock OpenXR's time and CLOCK_MONOTONIC go alike, also 
     CHECK(later >= kStart);
 }
 
-TEST_CASE("the application is told whether somebody wears the headset: when the session begins, and when that changes") {
+TEST_CASE(
+    "the application is told whether somebody wears the headset: when the session begins, and when that "
+    "changes") {
     const std::string script = "rate 10\nat 0.15 present off\nat 0.35 present on\n";
     {
         const HeadlessSession made(k1_0, {XR_EXT_USER_PRESENCE_EXTENSION_NAME}, script);
-        XrSystemUserPresencePropertiesEXT presence{XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT, nullptr, XR_FALSE};
+        XrSystemUserPresencePropertiesEXT presence{XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT, nullptr,
+                                                   XR_FALSE};
         XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &presence};
         CHECK(made.XR(xrGetSystemProperties)(made.instance, made.system, &properties) == XR_SUCCESS);
         CHECK(presence.supportsUserPresence == XR_TRUE);
@@ -155,9 +167,14 @@ TEST_CASE("the application is told whether somebody wears the headset: when the 
 
 TEST_CASE("the display's rate is one of a list, or the one that is fixed") {
     for (const bool is_fixed : {false, true}) {
-        const HeadlessSession made(k1_0, {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME}, is_fixed ? "rate 80 fixed\n" : "rate 100\n");
-        const auto request = [&](float rate) { return made.XR(xrRequestDisplayRefreshRateFB)(made.session, rate); };
-        const auto list = [&](auto... step) { return made.XR(xrEnumerateDisplayRefreshRatesFB)(made.session, step...); };
+        const HeadlessSession made(k1_0, {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME},
+                                   is_fixed ? "rate 80 fixed\n" : "rate 100\n");
+        const auto request = [&](float rate) {
+            return made.XR(xrRequestDisplayRefreshRateFB)(made.session, rate);
+        };
+        const auto list = [&](auto... step) {
+            return made.XR(xrEnumerateDisplayRefreshRatesFB)(made.session, step...);
+        };
         const std::vector<float> rates = checkList<float>(list);
         if (is_fixed) {
             CHECK(rates == std::vector<float>{80});
@@ -175,7 +192,8 @@ TEST_CASE("the display's rate is one of a list, or the one that is fixed") {
         checkEach(XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB, {request(75), request(NAN)});
         made.states();
         checkEach(XR_SUCCESS, {request(80), request(80)});
-        const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
+        const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(
+            XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
         REQUIRE(changes.size() == 1);
         CHECK(these(changes[0].fromDisplayRefreshRate, changes[0].toDisplayRefreshRate) == these(100, 80));
         CHECK(current() == 80);
@@ -189,7 +207,8 @@ TEST_CASE("the display's rate is one of a list, or the one that is fixed") {
 
 TEST_CASE("hands hold the script's controllers, in focus and while they are tracked") {
     const HeadlessSession made(k1_0, {XR_EXT_HAND_TRACKING_EXTENSION_NAME},
-                               "rate 10\ncontroller left 0 position -0.2 1 0\ncontroller left 1 position 0.8 1 0\naxis right trigger 0 1\n"
+                               "rate 10\ncontroller left 0 position -0.2 1 0\ncontroller left 1 position 0.8 "
+                               "1 0\naxis right trigger 0 1\n"
                                "at 0.25 controller right off\n");
     XrSystemHandTrackingPropertiesEXT hands{XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT};
     XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &hands};
@@ -197,7 +216,8 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
     CHECK(hands.supportsHandTracking == XR_TRUE);
 
     const auto create = made.XR(xrCreateHandTrackerEXT);
-    XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, XR_HAND_LEFT_EXT, XR_HAND_JOINT_SET_DEFAULT_EXT};
+    XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, XR_HAND_LEFT_EXT,
+                                    XR_HAND_JOINT_SET_DEFAULT_EXT};
     XrHandTrackerEXT none = XR_NULL_HANDLE;
     const auto make = [&] { return create(made.session, &info, &none); };
     checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.hand, static_cast<XrHandEXT>(3)),
@@ -222,11 +242,13 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
     const double straight = left.reach(XR_HAND_JOINT_INDEX_TIP_EXT, XR_HAND_JOINT_INDEX_PROXIMAL_EXT);
     CHECK(straight == doctest::Approx(0.085));
     CHECK(right.reach(XR_HAND_JOINT_INDEX_TIP_EXT, XR_HAND_JOINT_INDEX_PROXIMAL_EXT) < 0.6 * straight);
-    CHECK(right.reach(XR_HAND_JOINT_LITTLE_TIP_EXT, XR_HAND_JOINT_LITTLE_PROXIMAL_EXT) == doctest::Approx(0.07));
+    CHECK(right.reach(XR_HAND_JOINT_LITTLE_TIP_EXT, XR_HAND_JOINT_LITTLE_PROXIMAL_EXT) ==
+          doctest::Approx(0.07));
     CHECK_FALSE(right.isActiveAt(0.3));
 
     const auto locate = [&] { return left.locate(); };
-    checkChanges(locate, XR_ERROR_VALIDATION_FAILURE, to(left.locations.jointCount, 25), to(left.velocities.jointCount, 25));
+    checkChanges(locate, XR_ERROR_VALIDATION_FAILURE, to(left.locations.jointCount, 25),
+                 to(left.velocities.jointCount, 25));
     CHECK(with(left.where.time, 0, locate) == XR_ERROR_TIME_INVALID);
     CHECK(with(left.where.baseSpace, XR_NULL_HANDLE, locate) == XR_ERROR_HANDLE_INVALID);
     checkArguments(made.XR(xrLocateHandJointsEXT), left.tracker, &left.where, &left.locations);
@@ -236,9 +258,10 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
 }
 
 TEST_CASE("the joints of a hand turn with its controller, and those of a finger that bends with that, too") {
-    const HeadlessSession made(k1_0, {XR_EXT_HAND_TRACKING_EXTENSION_NAME},
-                               "rate 10\ncontroller left 0 position 0 1 0 turn 0 0\ncontroller left 1 position 0 1 0 turn 45 0\n"
-                               "axis right trigger 0 0\naxis right trigger 1 1\n");
+    const HeadlessSession made(
+        k1_0, {XR_EXT_HAND_TRACKING_EXTENSION_NAME},
+        "rate 10\ncontroller left 0 position 0 1 0 turn 0 0\ncontroller left 1 position 0 1 0 turn 45 0\n"
+        "axis right trigger 0 0\naxis right trigger 1 1\n");
     made.begin();
     Hand left(made, XR_HAND_LEFT_EXT), right(made, XR_HAND_RIGHT_EXT);
     for (Hand* hand : {&left, &right}) {
@@ -247,8 +270,9 @@ TEST_CASE("the joints of a hand turn with its controller, and those of a finger 
     }
     // A quarter of pi per second to the left, which is about +y.
     for (const auto& speed : left.speeds) {
-        CHECK(these(speed.angularVelocity.x, speed.angularVelocity.y, speed.angularVelocity.z) ==
-              these(doctest::Approx(0), doctest::Approx(0.25 * 3.14159265).epsilon(1e-3), doctest::Approx(0)));
+        CHECK(
+            these(speed.angularVelocity.x, speed.angularVelocity.y, speed.angularVelocity.z) ==
+            these(doctest::Approx(0), doctest::Approx(0.25 * 3.14159265).epsilon(1e-3), doctest::Approx(0)));
     }
     CHECK(right.turning(XR_HAND_JOINT_INDEX_TIP_EXT) > 1);
     CHECK(right.turning(XR_HAND_JOINT_LITTLE_TIP_EXT) == doctest::Approx(0));
@@ -264,7 +288,8 @@ TEST_CASE("a headless session has no swapchains, needs no frames, and is in focu
     CHECK(made.XR(xrCreateSwapchain)(made.session, &info, &swapchain) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(made.states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
     made.begin();
-    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
+    CHECK(made.states() ==
+          States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
     // Each xrSyncActions takes a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
     for (int i = 0; i < 4; ++i) { CHECK(made.sync() == XR_SUCCESS); }
     CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
@@ -282,12 +307,15 @@ TEST_CASE("a headless session may have frames, which nobody draws; time and stat
     made.begin();
     made.states();
     checkEach(XR_ERROR_CALL_ORDER_INVALID, {begin(made.session, nullptr), made.endFrame(kStart)});
-    const States expected[] = {{}, {}, {XR_SESSION_STATE_VISIBLE}, {}, {XR_SESSION_STATE_SYNCHRONIZED}, {XR_SESSION_STATE_STOPPING}};
+    const States expected[] = {
+        {}, {}, {XR_SESSION_STATE_VISIBLE}, {}, {XR_SESSION_STATE_SYNCHRONIZED}, {XR_SESSION_STATE_STOPPING}};
     for (int frame = 0; frame < 6; ++frame) {
         state = made.waitFrame();
         CHECK(these(state.shouldRender, state.predictedDisplayTime, state.predictedDisplayPeriod) ==
               these(XR_FALSE, kStart + frame * 100'000'000, 100'000'000));
-        for (int i = 0; i < 2; ++i) { CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED)); }
+        for (int i = 0; i < 2; ++i) {
+            CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED));
+        }
         REQUIRE(begin(made.session, nullptr) == XR_SUCCESS);
         // Its picture would need a swapchain, which cannot exist here; even a layer without one is refused.
         const XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
@@ -298,13 +326,15 @@ TEST_CASE("a headless session may have frames, which nobody draws; time and stat
     CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
 }
 
-TEST_CASE("a headless session begins whatever view configuration it names, and ends at once when it is asked to") {
-    for (const auto type :
-         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
+TEST_CASE(
+    "a headless session begins whatever view configuration it names, and ends at once when it is asked to") {
+    for (const auto type : {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO,
+                            static_cast<XrViewConfigurationType>(4711)}) {
         const HeadlessSession made(k1_0, {});
         made.begin(type);
         CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
-        checkEach(XR_SUCCESS, {made.XR(xrRequestExitSession)(made.session), made.XR(xrEndSession)(made.session)});
+        checkEach(XR_SUCCESS,
+                  {made.XR(xrRequestExitSession)(made.session), made.XR(xrEndSession)(made.session)});
     }
 }
 
@@ -319,7 +349,8 @@ TEST_CASE("objects end in every order, each once, and with their parents") {
             const Everything made(attaches);
             std::set<std::string> gone;
             for (const std::string& name : order) {
-                CHECK(made.objects.at(name).destroy() == (gone.contains(name) ? XR_ERROR_HANDLE_INVALID : XR_SUCCESS));
+                CHECK(made.objects.at(name).destroy() ==
+                      (gone.contains(name) ? XR_ERROR_HANDLE_INVALID : XR_SUCCESS));
                 for (const auto& [other, object] : made.objects) {
                     if (other == name || object.parent == name) { gone.insert(other); }
                 }

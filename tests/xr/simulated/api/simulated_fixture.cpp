@@ -16,7 +16,8 @@ VkBool32 keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessage
 
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::vector<std::string>& messages) {
     VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
     info.pfnUserCallback = keepMessage;
     info.pUserData = &messages;
@@ -91,9 +92,10 @@ XrActionCreateInfo actionInfo(const std::string& name, const std::string& locali
 
 XrSwapchainCreateInfo swapchainInfo(VkFormat format) {
     XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
-    const bool is_depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D24_UNORM_S8_UINT ||
-                          format == VK_FORMAT_D32_SFLOAT_S8_UINT;
-    info.usageFlags = is_depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+    const bool is_depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM ||
+                          format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    info.usageFlags =
+        is_depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
     info.format = format;
     info.width = 64;
     info.height = 32;
@@ -102,29 +104,42 @@ XrSwapchainCreateInfo swapchainInfo(VkFormat format) {
 }
 
 VulkanDevice::VulkanDevice(const InstanceFixture& runtime, PFN_vkGetInstanceProcAddr loader) {
-    const VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "test", 0, nullptr, 0, VK_API_VERSION_1_1};
+    const VkApplicationInfo application{
+        VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "test", 0, nullptr, 0, VK_API_VERSION_1_1};
     const char* const layer = "VK_LAYER_KHRONOS_validation";
     const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     const VkValidationFeatureEnableEXT feature = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     VkDebugUtilsMessengerCreateInfoEXT messenger_info = messengerInfo(messages);
-    const VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messenger_info, 1, &feature, 0, nullptr};
-    const VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, &features, 0, &application, 1, &layer, 1, &extension};
+    const VkValidationFeaturesEXT features{
+        VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messenger_info, 1, &feature, 0, nullptr};
+    const VkInstanceCreateInfo vulkan_info{
+        VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, &features, 0, &application, 1, &layer, 1, &extension};
     const XrVulkanInstanceCreateInfoKHR info{
         XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, runtime.system, 0, loader, &vulkan_info, nullptr};
     VkResult result = VK_ERROR_UNKNOWN;
     REQUIRE(runtime.XR(xrCreateVulkanInstanceKHR)(runtime.instance, &info, &instance, &result) == XR_SUCCESS);
     REQUIRE(result == VK_SUCCESS);
-    const auto makeMessenger =
-        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
+    const auto makeMessenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
     REQUIRE(makeMessenger(instance, &messenger_info, nullptr, &messenger) == VK_SUCCESS);
 
-    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, runtime.system, instance};
-    REQUIRE(runtime.XR(xrGetVulkanGraphicsDevice2KHR)(runtime.instance, &get, &physical_device) == XR_SUCCESS);
+    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr,
+                                               runtime.system, instance};
+    REQUIRE(runtime.XR(xrGetVulkanGraphicsDevice2KHR)(runtime.instance, &get, &physical_device) ==
+            XR_SUCCESS);
     const float priority = 1;
-    const VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
-    const VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, nullptr, 0, 1, &queue_info, 0, nullptr, 0, nullptr, nullptr};
-    const XrVulkanDeviceCreateInfoKHR make{
-        XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, runtime.system, 0, loader, physical_device, &device_info, nullptr};
+    const VkDeviceQueueCreateInfo queue_info{
+        VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
+    const VkDeviceCreateInfo device_info{
+        VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, nullptr, 0, 1, &queue_info, 0, nullptr, 0, nullptr, nullptr};
+    const XrVulkanDeviceCreateInfoKHR make{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR,
+                                           nullptr,
+                                           runtime.system,
+                                           0,
+                                           loader,
+                                           physical_device,
+                                           &device_info,
+                                           nullptr};
     REQUIRE(runtime.XR(xrCreateVulkanDeviceKHR)(runtime.instance, &make, &device, &result) == XR_SUCCESS);
     REQUIRE(result == VK_SUCCESS);
 }
@@ -133,8 +148,8 @@ void VulkanDevice::endDevice() { vkDestroyDevice(std::exchange(device, VK_NULL_H
 
 VulkanDevice::~VulkanDevice() {
     endDevice();
-    reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"))(
-        instance, messenger, nullptr);
+    reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"))(instance, messenger, nullptr);
     vkDestroyInstance(instance, nullptr);
     if (messages.empty()) { return; }
     // At the end of the tests.
@@ -142,13 +157,15 @@ VulkanDevice::~VulkanDevice() {
     std::_Exit(1);
 }
 
-VulkanFixture::VulkanFixture(const std::string& script, const Extensions& more_extensions, PFN_vkGetInstanceProcAddr loader)
+VulkanFixture::VulkanFixture(const std::string& script, const Extensions& more_extensions,
+                             PFN_vkGetInstanceProcAddr loader)
     : InstanceFixture(script, more_extensions),
       own(loader == nullptr ? nullptr : std::make_unique<VulkanDevice>(*this, loader)),
       used(own == nullptr ? sharedDevice(*this) : *own) {
     XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
     REQUIRE(XR(xrGetVulkanGraphicsRequirements2KHR)(instance, system, &requirements) == XR_SUCCESS);
-    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
+    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system,
+                                               vulkan};
     VkPhysicalDevice found = VK_NULL_HANDLE;
     REQUIRE(XR(xrGetVulkanGraphicsDevice2KHR)(instance, &get, &found) == XR_SUCCESS);
     REQUIRE(found == physical_device);

@@ -23,9 +23,12 @@ inline constexpr XrPosef kIdentity{{0, 0, 0, 1}, {0, 0, 0}};
 inline constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 inline constexpr const char* kTouch = "/interaction_profiles/oculus/touch_controller";
 inline constexpr const char* kSimple = "/interaction_profiles/khr/simple_controller";
-inline constexpr XrSpaceLocationFlags kValid = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
-inline constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
-inline constexpr XrSpaceVelocityFlags kMoving = XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
+inline constexpr XrSpaceLocationFlags kValid =
+    XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+inline constexpr XrSpaceLocationFlags kTracked =
+    XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+inline constexpr XrSpaceVelocityFlags kMoving =
+    XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
 
 using Extensions = std::vector<const char*>;
 using Layers = std::vector<const XrCompositionLayerBaseHeader*>;
@@ -39,9 +42,11 @@ void setText(char (&destination)[size], const std::string& text) {
 
 XrInstanceCreateInfo instanceInfo(const Extensions& extensions, XrVersion version = XR_MAKE_VERSION(1, 0, 0));
 // The result of creating an instance, which is destroyed again.
-XrResult tryInstance(const XrInstanceCreateInfo& info, PFN_xrGetInstanceProcAddr find = xrGetInstanceProcAddr);
+XrResult tryInstance(const XrInstanceCreateInfo& info,
+                     PFN_xrGetInstanceProcAddr find = xrGetInstanceProcAddr);
 XrActionSetCreateInfo actionSetInfo(const std::string& name, const std::string& localized_name);
-XrActionCreateInfo actionInfo(const std::string& name, const std::string& localized_name, XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT);
+XrActionCreateInfo actionInfo(const std::string& name, const std::string& localized_name,
+                              XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT);
 XrSwapchainCreateInfo swapchainInfo(VkFormat format = VK_FORMAT_R8G8B8A8_SRGB);
 
 template <class Layer>
@@ -116,7 +121,8 @@ struct InstanceFixture : Headset {
     }
     States states() const {
         States states;
-        for (const auto& event : events<XrEventDataSessionStateChanged>(XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)) {
+        for (const auto& event :
+             events<XrEventDataSessionStateChanged>(XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)) {
             states.push_back(event.state);
         }
         return states;
@@ -138,36 +144,45 @@ struct InstanceFixture : Headset {
         REQUIRE(XR(xrCreateAction)(set, &info, &action) == XR_SUCCESS);
         return action;
     }
-    XrResult suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const {
-        const XrInteractionProfileSuggestedBinding info{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, path(profile),
-                                                        static_cast<std::uint32_t>(bindings.size()), bindings.data()};
+    XrResult suggest(const std::string& profile,
+                     const std::vector<XrActionSuggestedBinding>& bindings) const {
+        const XrInteractionProfileSuggestedBinding info{
+            XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, path(profile),
+            static_cast<std::uint32_t>(bindings.size()), bindings.data()};
         return XR(xrSuggestInteractionProfileBindings)(instance, &info);
     }
     // Binds a new action.
-    XrResult suggest(const std::string& profile, const std::string& binding, XrActionType type = XR_ACTION_TYPE_POSE_INPUT) const {
+    XrResult suggest(const std::string& profile, const std::string& binding,
+                     XrActionType type = XR_ACTION_TYPE_POSE_INPUT) const {
         const XrActionSet set = makeActionSet("set");
         const XrResult result = suggest(profile, {{makeAction(set, "action", type), path(binding)}});
         REQUIRE(XR(xrDestroyActionSet)(set) == XR_SUCCESS);
         return result;
     }
     void attach(const std::vector<XrActionSet>& sets) const {
-        const XrSessionActionSetsAttachInfo info{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, static_cast<std::uint32_t>(sets.size()),
-                                                 sets.data()};
+        const XrSessionActionSetsAttachInfo info{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr,
+                                                 static_cast<std::uint32_t>(sets.size()), sets.data()};
         REQUIRE(XR(xrAttachSessionActionSets)(session, &info) == XR_SUCCESS);
     }
     XrResult sync(const std::vector<XrActiveActionSet>& active = {}) const {
-        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, static_cast<std::uint32_t>(active.size()), active.data()};
+        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr,
+                                     static_cast<std::uint32_t>(active.size()), active.data()};
         return XR(xrSyncActions)(session, &info);
     }
-    XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const { return sync({XrActiveActionSet{set, subaction_path}}); }
+    XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const {
+        return sync({XrActiveActionSet{set, subaction_path}});
+    }
     XrActionStateBoolean boolean(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStateBoolean>(XR(xrGetActionStateBoolean), XR_TYPE_ACTION_STATE_BOOLEAN, action, hand);
+        return stateOf<XrActionStateBoolean>(XR(xrGetActionStateBoolean), XR_TYPE_ACTION_STATE_BOOLEAN,
+                                             action, hand);
     }
     XrActionStateFloat number(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStateFloat>(XR(xrGetActionStateFloat), XR_TYPE_ACTION_STATE_FLOAT, action, hand);
+        return stateOf<XrActionStateFloat>(XR(xrGetActionStateFloat), XR_TYPE_ACTION_STATE_FLOAT, action,
+                                           hand);
     }
     XrActionStateVector2f vector(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStateVector2f>(XR(xrGetActionStateVector2f), XR_TYPE_ACTION_STATE_VECTOR2F, action, hand);
+        return stateOf<XrActionStateVector2f>(XR(xrGetActionStateVector2f), XR_TYPE_ACTION_STATE_VECTOR2F,
+                                              action, hand);
     }
     XrActionStatePose pose(XrAction action, XrPath hand = XR_NULL_PATH) const {
         return stateOf<XrActionStatePose>(XR(xrGetActionStatePose), XR_TYPE_ACTION_STATE_POSE, action, hand);
@@ -190,7 +205,8 @@ struct InstanceFixture : Headset {
     }
     XrResult endFrame(XrTime time, const Layers& layers = {}) const {
         const auto count = static_cast<std::uint32_t>(layers.size());
-        const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO, nullptr, time, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, count, layers.data()};
+        const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,           nullptr, time,
+                                  XR_ENVIRONMENT_BLEND_MODE_OPAQUE, count,   layers.data()};
         return XR(xrEndFrame)(session, &info);
     }
     // Wait, begin, end.
@@ -218,8 +234,10 @@ struct InstanceFixture : Headset {
         REQUIRE(trySpace(type, space) == XR_SUCCESS);
         return space;
     }
-    XrSpace makeActionSpace(XrAction action, XrPath hand = XR_NULL_PATH, const XrPosef& pose_in_space = kIdentity) const {
-        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, action, hand, pose_in_space};
+    XrSpace makeActionSpace(XrAction action, XrPath hand = XR_NULL_PATH,
+                            const XrPosef& pose_in_space = kIdentity) const {
+        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, action, hand,
+                                           pose_in_space};
         XrSpace space = XR_NULL_HANDLE;
         REQUIRE(XR(xrCreateActionSpace)(session, &info, &space) == XR_SUCCESS);
         return space;
@@ -231,7 +249,8 @@ struct InstanceFixture : Headset {
     }
 
 protected:
-    InstanceFixture(const std::string& script, PFN_xrGetInstanceProcAddr find, const XrInstanceCreateInfo& info)
+    InstanceFixture(const std::string& script, PFN_xrGetInstanceProcAddr find,
+                    const XrInstanceCreateInfo& info)
         : Headset(script), find_function(find) {
         REQUIRE(XR(xrCreateInstance)(&info, &instance) == XR_SUCCESS);
         const XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
@@ -240,7 +259,8 @@ protected:
 
 private:
     static Extensions withUsual(Extensions more) {
-        const Extensions usual{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
+        const Extensions usual{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME,
+                               XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
                                XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
         more.insert(more.end(), usual.begin(), usual.end());
         return more;

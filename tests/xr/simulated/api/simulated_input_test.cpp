@@ -27,10 +27,14 @@ struct InputFixture : SessionFixture {
 
     InputFixture() : SessionFixture(kScript) {
         const std::vector<XrActionSuggestedBinding> bindings{
-            {click, path("/user/hand/right/input/a/click")},      {pull, path("/user/hand/left/input/trigger/value")},
-            {pull, path("/user/hand/right/input/trigger/value")}, {stick, path("/user/hand/right/input/thumbstick")},
-            {grip, path("/user/hand/left/input/grip/pose")},      {grip, path("/user/hand/right/input/grip/pose")},
-            {shake, path("/user/hand/left/output/haptic")},       {shake, path("/user/hand/right/output/haptic")},
+            {click, path("/user/hand/right/input/a/click")},
+            {pull, path("/user/hand/left/input/trigger/value")},
+            {pull, path("/user/hand/right/input/trigger/value")},
+            {stick, path("/user/hand/right/input/thumbstick")},
+            {grip, path("/user/hand/left/input/grip/pose")},
+            {grip, path("/user/hand/right/input/grip/pose")},
+            {shake, path("/user/hand/left/output/haptic")},
+            {shake, path("/user/hand/right/output/haptic")},
         };
         REQUIRE(suggest(kTouch, bindings) == XR_SUCCESS);
     }
@@ -50,7 +54,9 @@ private:
     int shown = 2;
 };
 
-TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an action has two in its set, a type and known hands") {
+TEST_CASE_FIXTURE(
+    InstanceFixture,
+    "an action set has two names of its own, an action has two in its set, a type and known hands") {
     XrActionSet other_set = XR_NULL_HANDLE;
     const auto makeSet = [&](const char* name, const char* localized_name) {
         const XrActionSetCreateInfo info = actionSetInfo(name, localized_name);
@@ -59,12 +65,14 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     XrActionSetCreateInfo set_info = actionSetInfo("walking", "Walking");
     XrActionSet set = XR_NULL_HANDLE;
     CHECK(xrCreateActionSet(instance, &set_info, &set) == XR_SUCCESS);
-    CHECK(these(makeSet("", "Running"), makeSet("running", "")) == these(XR_ERROR_NAME_INVALID, XR_ERROR_LOCALIZED_NAME_INVALID));
+    CHECK(these(makeSet("", "Running"), makeSet("running", "")) ==
+          these(XR_ERROR_NAME_INVALID, XR_ERROR_LOCALIZED_NAME_INVALID));
     for (const char* bad : {"Running", "run/ning", "running fast"}) {
         CHECK_MESSAGE(makeSet(bad, "Running") == XR_ERROR_PATH_FORMAT_INVALID, bad);
     }
-    CHECK(these(makeSet("walking", "Running"), makeSet("running", "Walking"), makeSet("running", "\xC3\x28")) ==
-          these(XR_ERROR_NAME_DUPLICATED, XR_ERROR_LOCALIZED_NAME_DUPLICATED, XR_ERROR_VALIDATION_FAILURE));
+    CHECK(
+        these(makeSet("walking", "Running"), makeSet("running", "Walking"), makeSet("running", "\xC3\x28")) ==
+        these(XR_ERROR_NAME_DUPLICATED, XR_ERROR_LOCALIZED_NAME_DUPLICATED, XR_ERROR_VALIDATION_FAILURE));
     checkEach(XR_SUCCESS, {makeSet("running", "L\xC3\xA4uft"), xrDestroyActionSet(set)});
     CHECK(xrDestroyActionSet(set) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrCreateActionSet(instance, &set_info, &set) == XR_SUCCESS);
@@ -80,20 +88,22 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     };
     XrActionCreateInfo info = actionInfo("jump", "Jump");
     CHECK(xrCreateAction(set, &info, &action) == XR_SUCCESS);
-    CHECK(these(make("jump", "Jump"), make("duck", "Jump")) == these(XR_ERROR_NAME_DUPLICATED, XR_ERROR_LOCALIZED_NAME_DUPLICATED));
+    CHECK(these(make("jump", "Jump"), make("duck", "Jump")) ==
+          these(XR_ERROR_NAME_DUPLICATED, XR_ERROR_LOCALIZED_NAME_DUPLICATED));
     checkEach(XR_SUCCESS, {xrCreateAction(other_set, &info, &other), xrDestroyAction(action)});
     CHECK(xrDestroyAction(action) == XR_ERROR_HANDLE_INVALID);
     CHECK(these(make("duck", "Jump"), make("", "Roll"), make("roll", ""), make("Roll", "Roll")) ==
-          these(XR_SUCCESS, XR_ERROR_NAME_INVALID, XR_ERROR_LOCALIZED_NAME_INVALID, XR_ERROR_PATH_FORMAT_INVALID));
+          these(XR_SUCCESS, XR_ERROR_NAME_INVALID, XR_ERROR_LOCALIZED_NAME_INVALID,
+                XR_ERROR_PATH_FORMAT_INVALID));
     info = actionInfo("roll", "Roll", XR_ACTION_TYPE_FLOAT_INPUT);
     XrPath paths[2] = {path("/user/hand/left"), path("/user/gamepad")};
     info.countSubactionPaths = 2;
     info.subactionPaths = paths;
     const auto makeForHands = [&] { return xrCreateAction(set, &info, &other); };
-    checkChanges(makeForHands, XR_ERROR_VALIDATION_FAILURE, to(info.actionType, static_cast<XrActionType>(77)),
-                 to(info.subactionPaths, nullptr));
-    checkChanges(makeForHands, XR_ERROR_PATH_UNSUPPORTED, to(paths[1], paths[0]), to(paths[1], path("/user/foot/left")),
-                 to(paths[1], path("/user/eyes_ext")));
+    checkChanges(makeForHands, XR_ERROR_VALIDATION_FAILURE,
+                 to(info.actionType, static_cast<XrActionType>(77)), to(info.subactionPaths, nullptr));
+    checkChanges(makeForHands, XR_ERROR_PATH_UNSUPPORTED, to(paths[1], paths[0]),
+                 to(paths[1], path("/user/foot/left")), to(paths[1], path("/user/eyes_ext")));
     CHECK(with(paths[1], 999'999, makeForHands) == XR_ERROR_PATH_INVALID);
     CHECK(makeForHands() == XR_SUCCESS);
     checkArguments(xrCreateAction, set, &info, &action);
@@ -101,16 +111,19 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     CHECK(xrDestroyAction(other) == XR_ERROR_HANDLE_INVALID);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attached once, and are fixed from then on") {
+TEST_CASE_FIXTURE(SessionFixture,
+                  "suggestions are whole, action sets are attached once, and are fixed from then on") {
     const XrActionSet set = makeActionSet("walking"), left_out = makeActionSet("running");
     const XrAction action = makeAction(set, "jump", kBoolean), other = makeAction(left_out, "jump", kBoolean);
     const XrPath left = path("/user/hand/left"), click = path("/user/hand/left/input/select/click");
     CHECK(suggest(kSimple, std::vector<XrActionSuggestedBinding>{}) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(suggest(kSimple, {{XR_NULL_HANDLE, click}}) == XR_ERROR_HANDLE_INVALID);
-    checkEach(XR_ERROR_PATH_INVALID, {suggest(kSimple, {{action, XR_NULL_PATH}}), suggest(kSimple, {{action, 123'456}})});
+    checkEach(XR_ERROR_PATH_INVALID,
+              {suggest(kSimple, {{action, XR_NULL_PATH}}), suggest(kSimple, {{action, 123'456}})});
     CHECK(suggest("/user/hand/left", {{action, click}}) == XR_ERROR_PATH_UNSUPPORTED);
     const XrActionSuggestedBinding binding{action, click};
-    XrInteractionProfileSuggestedBinding suggestion{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, path(kSimple), 1, &binding};
+    XrInteractionProfileSuggestedBinding suggestion{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr,
+                                                    path(kSimple), 1, &binding};
     const auto suggestIt = [&] { return xrSuggestInteractionProfileBindings(instance, &suggestion); };
     checkArguments(xrSuggestInteractionProfileBindings, instance, &suggestion);
     CHECK(with(suggestion.interactionProfile, XR_NULL_PATH, suggestIt) == XR_ERROR_PATH_INVALID);
@@ -119,7 +132,8 @@ TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attach
     XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, action, XR_NULL_PATH};
     XrInteractionProfileState profile{XR_TYPE_INTERACTION_PROFILE_STATE};
     checkEach(XR_ERROR_ACTIONSET_NOT_ATTACHED,
-              {xrGetActionStateBoolean(session, &get, &state), xrGetCurrentInteractionProfile(session, left, &profile), sync(set)});
+              {xrGetActionStateBoolean(session, &get, &state),
+               xrGetCurrentInteractionProfile(session, left, &profile), sync(set)});
     const XrActionSet nothing = XR_NULL_HANDLE;
     XrSessionActionSetsAttachInfo info{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, 1, &set};
     const auto attachIt = [&] { return xrAttachSessionActionSets(session, &info); };
@@ -135,7 +149,8 @@ TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attach
     CHECK(suggest(kSimple, {{action, click}}) == XR_ERROR_ACTIONSETS_ALREADY_ATTACHED);
     CHECK(suggest(kSimple, {{other, click}}) == XR_SUCCESS);
     CHECK(boolean(action).isActive == XR_FALSE);
-    CHECK(with(get.action, other, [&] { return xrGetActionStateBoolean(session, &get, &state); }) == XR_ERROR_ACTIONSET_NOT_ATTACHED);
+    CHECK(with(get.action, other, [&] { return xrGetActionStateBoolean(session, &get, &state); }) ==
+          XR_ERROR_ACTIONSET_NOT_ATTACHED);
     CHECK(sync(left_out) == XR_ERROR_ACTIONSET_NOT_ATTACHED);
     CHECK(sync(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
     CHECK(sync(set) == XR_SESSION_NOT_FOCUSED);
@@ -146,7 +161,9 @@ TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attach
     CHECK(xrGetCurrentInteractionProfile(session, XR_NULL_PATH, &profile) == XR_ERROR_PATH_INVALID);
 }
 
-TEST_CASE_FIXTURE(InputFixture, "a profile is in use from the first sync in focus on, and announced; states are got by type and hand") {
+TEST_CASE_FIXTURE(
+    InputFixture,
+    "a profile is in use from the first sync in focus on, and announced; states are got by type and hand") {
     attach({set});
     CHECK(sync(set) == XR_SESSION_NOT_FOCUSED);
     CHECK(profileOf(left) == "none");
@@ -171,10 +188,14 @@ TEST_CASE_FIXTURE(InputFixture, "a profile is in use from the first sync in focu
     get = {XR_TYPE_ACTION_STATE_GET_INFO, nullptr, click, left};
     CHECK(getBoolean() == XR_ERROR_PATH_UNSUPPORTED);
 
-    const XrBoundSourcesForActionEnumerateInfo info{XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO, nullptr, pull};
-    const auto sources = checkList<XrPath>([&](auto... step) { return xrEnumerateBoundSourcesForAction(session, &info, step...); });
-    CHECK(sources == std::vector{path("/user/hand/left/input/trigger/value"), path("/user/hand/right/input/trigger/value")});
-    XrInputSourceLocalizedNameGetInfo named{XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO, nullptr, sources[0], 7};
+    const XrBoundSourcesForActionEnumerateInfo info{XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO, nullptr,
+                                                    pull};
+    const auto sources = checkList<XrPath>(
+        [&](auto... step) { return xrEnumerateBoundSourcesForAction(session, &info, step...); });
+    CHECK(sources == std::vector{path("/user/hand/left/input/trigger/value"),
+                                 path("/user/hand/right/input/trigger/value")});
+    XrInputSourceLocalizedNameGetInfo named{XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO, nullptr, sources[0],
+                                            7};
     const auto names = [&](auto... step) { return xrGetInputSourceLocalizedName(session, &named, step...); };
     CHECK(std::string(checkList<char>(names).data()) == "Left hand Touch controller Trigger");
     std::uint32_t count = 0;
@@ -187,7 +208,9 @@ TEST_CASE_FIXTURE(InputFixture, "a profile is in use from the first sync in focu
     CHECK(with(named.sourcePath, XR_NULL_PATH, getName) == XR_ERROR_PATH_INVALID);
 }
 
-TEST_CASE_FIXTURE(InputFixture, "a button is pressed at the script's times, seen at syncs; of two hands the stronger counts, or one") {
+TEST_CASE_FIXTURE(
+    InputFixture,
+    "a button is pressed at the script's times, seen at syncs; of two hands the stronger counts, or one") {
     start();
     runTo(4);
     CHECK(these(boolean(click).isActive, boolean(click).currentState, boolean(click).changedSinceLastSync) ==
@@ -195,16 +218,20 @@ TEST_CASE_FIXTURE(InputFixture, "a button is pressed at the script's times, seen
     frame();
     CHECK_MESSAGE(boolean(click).currentState == XR_FALSE, "nothing changes between syncs");
     REQUIRE(sync(set) == XR_SUCCESS);
-    CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync, boolean(click).lastChangeTime) ==
-          these(XR_TRUE, XR_TRUE, 1'500'000'000));
-    CHECK(these(number(pull, left).currentState, number(pull, right).currentState, number(pull).currentState) ==
-          these(doctest::Approx(0.2), doctest::Approx(0.5), doctest::Approx(0.5)));
-    CHECK(these(vector(stick).currentState.x, vector(stick).currentState.y) == these(doctest::Approx(0.5), doctest::Approx(-0.5)));
+    CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync,
+                boolean(click).lastChangeTime) == these(XR_TRUE, XR_TRUE, 1'500'000'000));
+    CHECK(
+        these(number(pull, left).currentState, number(pull, right).currentState, number(pull).currentState) ==
+        these(doctest::Approx(0.2), doctest::Approx(0.5), doctest::Approx(0.5)));
+    CHECK(these(vector(stick).currentState.x, vector(stick).currentState.y) ==
+          these(doctest::Approx(0.5), doctest::Approx(-0.5)));
     REQUIRE(sync(set) == XR_SUCCESS);
-    CHECK(these(boolean(click).changedSinceLastSync, boolean(click).lastChangeTime) == these(XR_FALSE, 1'500'000'000));
+    CHECK(these(boolean(click).changedSinceLastSync, boolean(click).lastChangeTime) ==
+          these(XR_FALSE, 1'500'000'000));
     for (int i = 0; i < 2; ++i) { frame(); }
     REQUIRE(sync(set) == XR_SUCCESS);
-    CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync) == these(XR_FALSE, XR_TRUE));
+    CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync) ==
+          these(XR_FALSE, XR_TRUE));
     // A set that is not synced is inactive, and so is a hand that is not included.
     REQUIRE(sync(set, left) == XR_SUCCESS);
     CHECK(these(number(pull, left).isActive, number(pull, right).isActive) == these(XR_TRUE, XR_FALSE));
@@ -218,7 +245,9 @@ TEST_CASE_FIXTURE(InputFixture, "a button is pressed at the script's times, seen
     checkArguments(xrSyncActions, session, &nothing);
 }
 
-TEST_CASE_FIXTURE(InputFixture, "action spaces are made of pose actions, and move with their hands, also once the action is gone") {
+TEST_CASE_FIXTURE(
+    InputFixture,
+    "action spaces are made of pose actions, and move with their hands, also once the action is gone") {
     XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, left, kIdentity};
     XrSpace made = XR_NULL_HANDLE;
     const auto make = [&] { return xrCreateActionSpace(session, &info, &made); };
@@ -245,8 +274,8 @@ TEST_CASE_FIXTURE(InputFixture, "action spaces are made of pose actions, and mov
     // or after.
     CHECK(locate(above, held, 2'500'000'000).locationFlags == 15);
     runTo(11);
-    CHECK(these(number(pull, right).isActive, number(pull, right).currentState, number(pull, right).lastChangeTime) ==
-          these(XR_FALSE, 0, 0));
+    CHECK(these(number(pull, right).isActive, number(pull, right).currentState,
+                number(pull, right).lastChangeTime) == these(XR_FALSE, 0, 0));
     CHECK(number(pull).currentState == doctest::Approx(0.2));
     CHECK(pose(grip, right).isActive == XR_FALSE);
     CHECK(locate(held, local, 2'100'000'000).locationFlags == 0);
@@ -256,7 +285,9 @@ TEST_CASE_FIXTURE(InputFixture, "action spaces are made of pose actions, and mov
     CHECK(these(velocity.velocityFlags, velocity.linearVelocity.y) == these(kMoving, 0));
     location = locate(held, above, 2'100'000'000);
     CHECK(these(location.locationFlags, location.pose.position.y) == these(15, doctest::Approx(-0.5)));
-    for (const XrSpace base : {other, local}) { CHECK(locate(above, base, 2'100'000'000).locationFlags == 0); }
+    for (const XrSpace base : {other, local}) {
+        CHECK(locate(above, base, 2'100'000'000).locationFlags == 0);
+    }
     REQUIRE(sync(set, left) == XR_SUCCESS);
     CHECK(locate(above, held, 2'100'000'000).locationFlags == 0);
     CHECK(xrDestroyAction(grip) == XR_SUCCESS);
@@ -280,9 +311,12 @@ TEST_CASE_FIXTURE(InputFixture, "a set of higher priority takes the controls tha
     CHECK(number(pull, right).isActive == XR_TRUE);
 }
 
-TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus; the log tells how strong one is, and one of no strength is none") {
+TEST_CASE_FIXTURE(InputFixture,
+                  "haptics go to haptic actions, in focus; the log tells how strong one is, and one of no "
+                  "strength is none") {
     attach({set});
-    XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION, XR_FREQUENCY_UNSPECIFIED, 0.5f};
+    XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION,
+                                XR_FREQUENCY_UNSPECIFIED, 0.5f};
     const auto* const feedback = reinterpret_cast<const XrHapticBaseHeader*>(&vibration);
     XrHapticActionInfo info{XR_TYPE_HAPTIC_ACTION_INFO, nullptr, shake, left};
     const auto apply = [&] { return xrApplyHapticFeedback(session, &info, feedback); };
@@ -295,7 +329,8 @@ TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus; the log
     frame();
     checkEach(XR_SUCCESS, {apply(), stop()});
     CHECK(with(info.subactionPath, path("/user/head"), apply) == XR_ERROR_PATH_UNSUPPORTED);
-    checkChanges(apply, XR_ERROR_VALIDATION_FAILURE, to(vibration.amplitude, 2), to(vibration.type, XR_TYPE_UNKNOWN));
+    checkChanges(apply, XR_ERROR_VALIDATION_FAILURE, to(vibration.amplitude, 2),
+                 to(vibration.type, XR_TYPE_UNKNOWN));
     CHECK(xrApplyHapticFeedback(session, &info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     checkEach(XR_ERROR_ACTION_TYPE_MISMATCH, {with(info.action, pull, apply), with(info.action, pull, stop)});
     CHECK(with(info.action, XR_NULL_HANDLE, stop) == XR_ERROR_HANDLE_INVALID);
@@ -318,15 +353,19 @@ TEST_CASE("a script that moves what the program's controllers lack is refused wh
     for (int i = 0; i < 2; ++i) { CHECK(made.sync(set) == XR_ERROR_RUNTIME_FAILURE); }
 }
 
-TEST_CASE("other controllers taken up are announced and read, those that the program does not know are the first that it does") {
+TEST_CASE(
+    "other controllers taken up are announced and read, those that the program does not know are the first "
+    "that it does") {
     const SessionFixture made(
         "size 64 64\nframes none\nrate 10\npress left trigger 0 2\npress left select 0 2\n"
         "at 0.5 profile khr/simple_controller\nat 0.7 profile valve/index_controller\n");
     const XrActionSet set = made.makeActionSet("walking");
     const XrAction by_trigger = made.makeAction(set, "pull", XR_ACTION_TYPE_FLOAT_INPUT);
     const XrAction by_select = made.makeAction(set, "select", kBoolean);
-    REQUIRE(made.suggest(kTouch, {{by_trigger, made.path("/user/hand/left/input/trigger/value")}}) == XR_SUCCESS);
-    REQUIRE(made.suggest(kSimple, {{by_select, made.path("/user/hand/left/input/select/click")}}) == XR_SUCCESS);
+    REQUIRE(made.suggest(kTouch, {{by_trigger, made.path("/user/hand/left/input/trigger/value")}}) ==
+            XR_SUCCESS);
+    REQUIRE(made.suggest(kSimple, {{by_select, made.path("/user/hand/left/input/select/click")}}) ==
+            XR_SUCCESS);
     made.attach({set});
     made.focus();
     const char* in_use = nullptr;
@@ -355,8 +394,10 @@ TEST_CASE_FIXTURE(SessionFixture, "suggested paths are converted to the action's
     attach({set});
     focus();
     REQUIRE(sync(set) == XR_SUCCESS);
-    for (const auto& [action, expected] : {std::pair(as_boolean, 1u), std::pair(as_float, 1u), std::pair(as_stick, 0u)}) {
-        const XrBoundSourcesForActionEnumerateInfo info{XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO, nullptr, action};
+    for (const auto& [action, expected] :
+         {std::pair(as_boolean, 1u), std::pair(as_float, 1u), std::pair(as_stick, 0u)}) {
+        const XrBoundSourcesForActionEnumerateInfo info{XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO,
+                                                        nullptr, action};
         std::uint32_t count = 99;
         REQUIRE(xrEnumerateBoundSourcesForAction(session, &info, 0, &count, nullptr) == XR_SUCCESS);
         CHECK(count == expected);  // a button is not a stick

@@ -15,7 +15,9 @@ using Views = std::vector<XrView>;
 // "32x32 32x32 24x24 24x24"
 std::string sizesOf(const std::string& script) {
     const InstanceFixture made(script, kQuad);
-    const auto list = [&](auto... step) { return xrEnumerateViewConfigurationViews(made.instance, made.system, kInset, step...); };
+    const auto list = [&](auto... step) {
+        return xrEnumerateViewConfigurationViews(made.instance, made.system, kInset, step...);
+    };
     const auto views = checkList<XrViewConfigurationView>(list, {XR_TYPE_VIEW_CONFIGURATION_VIEW});
     REQUIRE(views.size() == 4);
     std::string text;
@@ -30,14 +32,19 @@ std::string sizesOf(const std::string& script) {
 // Left, right, up and down.
 void checkAngles(const XrView& view, const std::array<double, 4>& degrees) {
     const float found[] = {view.fov.angleLeft, view.fov.angleRight, view.fov.angleUp, view.fov.angleDown};
-    for (std::size_t i = 0; i < 4; ++i) { CHECK(found[i] / kDegree == doctest::Approx(degrees[i]).epsilon(1e-5)); }
+    for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(found[i] / kDegree == doctest::Approx(degrees[i]).epsilon(1e-5));
+    }
 }
 
 struct QuadFixture : SessionFixture {
-    explicit QuadFixture(const std::string& script) : SessionFixture("size 64 64\n" + script, kQuad) { begin(kInset); }
+    explicit QuadFixture(const std::string& script) : SessionFixture("size 64 64\n" + script, kQuad) {
+        begin(kInset);
+    }
 
     Views locateViews(XrTime time, bool moves = true) const {
-        const XrViewLocateFoveatedRenderingVARJO follow{XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO, nullptr, XrBool32{moves}};
+        const XrViewLocateFoveatedRenderingVARJO follow{XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO, nullptr,
+                                                        XrBool32{moves}};
         const XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO, &follow, kInset, time, local};
         XrViewState state{XR_TYPE_VIEW_STATE};
         const auto list = [&](auto... step) { return xrLocateViews(session, &info, &state, step...); };
@@ -79,7 +86,8 @@ struct PaintedFixture : QuadFixture {
         const Views located = locateViews(time);
         for (std::size_t i = 0; i < 4; ++i) {
             const XrSwapchainSubImage image{swapchains[i < 2 ? 0 : i - 1], {{0, 0}, {16, 16}}, 0};
-            views[i] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, located[i].pose, located[i].fov, image};
+            views[i] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, located[i].pose, located[i].fov,
+                        image};
         }
         layer.viewCount = view_count;
         const XrResult result = endFrame(time, {headerOf(layer)});
@@ -94,38 +102,50 @@ char colourAt(const simulated::RgbPicture& picture, std::uint32_t x, std::uint32
     return is(255, 0, 0) ? 'r' : is(0, 255, 0) ? 'g' : is(0, 0, 255) ? 'b' : '?';
 }
 
-TEST_CASE("the inset is listed where the program may name it, one of 1.1 also of a headset of two views; the script may take it away") {
+TEST_CASE(
+    "the inset is listed where the program may name it, one of 1.1 also of a headset of two views; the "
+    "script may take it away") {
     using Types = std::vector<XrViewConfigurationType>;
     const std::string without = std::string(kQuietScript) + "extension XR_VARJO_quad_views off\n";
     for (const auto& [version, extensions, script, expected, answer] :
-         {std::tuple(k1_0, Extensions{}, std::string(kQuietScript), Types{kStereo}, XR_ERROR_VALIDATION_FAILURE),
+         {std::tuple(k1_0, Extensions{}, std::string(kQuietScript), Types{kStereo},
+                     XR_ERROR_VALIDATION_FAILURE),
           std::tuple(k1_0, kQuad, std::string(kQuietScript), Types{kStereo, kInset}, XR_SUCCESS),
           std::tuple(k1_1, Extensions{}, std::string(kQuietScript), Types{kStereo, kInset}, XR_SUCCESS),
-          std::tuple(k1_1, Extensions{}, without, Types{kStereo}, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED)}) {
+          std::tuple(k1_1, Extensions{}, without, Types{kStereo},
+                     XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED)}) {
         const DirectInstance made(version, extensions, script);
         Types types(4);
         std::uint32_t count = 0;
-        REQUIRE(made.XR(xrEnumerateViewConfigurations)(made.instance, made.system, 4, &count, types.data()) == XR_SUCCESS);
+        REQUIRE(made.XR(xrEnumerateViewConfigurations)(made.instance, made.system, 4, &count, types.data()) ==
+                XR_SUCCESS);
         types.resize(count);
         CHECK(types == expected);
         XrViewConfigurationProperties properties{XR_TYPE_VIEW_CONFIGURATION_PROPERTIES};
-        CHECK(made.XR(xrGetViewConfigurationProperties)(made.instance, made.system, kInset, &properties) == answer);
+        CHECK(made.XR(xrGetViewConfigurationProperties)(made.instance, made.system, kInset, &properties) ==
+              answer);
     }
 }
 
-TEST_CASE("contexts are of half the pixels, insets of as many a degree as the whole view would be, or as the script says") {
+TEST_CASE(
+    "contexts are of half the pixels, insets of as many a degree as the whole view would be, or as the "
+    "script says") {
     // 64 tan 20 / tan 45 is 23.3.
     CHECK(sizesOf("size 64 64\nframes none\n") == "32x32 32x32 24x24 24x24");
     CHECK(sizesOf("size 64 64\nframes none\ninset 10\n") == "32x32 32x32 12x12 12x12");
-    CHECK(sizesOf("size 64 64\nframes none\ninset 10 size 50 40 context 20 30\n") == "20x30 20x30 50x40 50x40");
+    CHECK(sizesOf("size 64 64\nframes none\ninset 10 size 50 40 context 20 30\n") ==
+          "20x30 20x30 50x40 50x40");
     CHECK(sizesOf("size 65 64\nframes none\ninset 45\n") == "33x32 33x32 65x64 65x64");
     const InstanceFixture made(kQuietScript, kQuad);
     std::uint32_t count = 0;
-    CHECK(xrEnumerateEnvironmentBlendModes(made.instance, made.system, kInset, 0, &count, nullptr) == XR_SUCCESS);
+    CHECK(xrEnumerateEnvironmentBlendModes(made.instance, made.system, kInset, 0, &count, nullptr) ==
+          XR_SUCCESS);
 }
 
 TEST_CASE("insets lie about the gaze, with the poses of their eyes, and stay in their views") {
-    const auto firstOf = [](const std::string& script) { return QuadFixture("frames none\n" + script).locateNext(); };
+    const auto firstOf = [](const std::string& script) {
+        return QuadFixture("frames none\n" + script).locateNext();
+    };
     const Views ahead = firstOf("");
     for (const std::size_t view : {2u, 3u}) { checkAngles(ahead[view], {-20, 20, 20, -20}); }
     // To the left and down; the pitch is about the turned head's own axis.
@@ -146,16 +166,20 @@ TEST_CASE("insets lie about the gaze, with the poses of their eyes, and stay in 
     checkAngles(lost.locateNext()[2], {-20, 20, 20, -20});
 }
 
-TEST_CASE("insets follow the gaze only where a program asks for that, with the extension, and the headset says whether they can") {
+TEST_CASE(
+    "insets follow the gaze only where a program asks for that, with the extension, and the headset says "
+    "whether they can") {
     {
         const QuadFixture made("frames none\ngaze 0 15 0\n");
         const XrTime time = made.frame().predictedDisplayTime;
         checkAngles(made.locateViews(time, false)[2], {-20, 20, 20, -20});
         checkAngles(made.locateViews(time, true)[2], {-35, 5, 20, -20});
     }
-    for (const auto& [lines, expected] : {std::pair("", XR_TRUE), std::pair("eye-tracking off\n", XR_FALSE)}) {
+    for (const auto& [lines, expected] :
+         {std::pair("", XR_TRUE), std::pair("eye-tracking off\n", XR_FALSE)}) {
         const InstanceFixture told(std::string(kQuietScript) + lines, kQuad);
-        XrSystemFoveatedRenderingPropertiesVARJO insets{XR_TYPE_SYSTEM_FOVEATED_RENDERING_PROPERTIES_VARJO, nullptr, 7};
+        XrSystemFoveatedRenderingPropertiesVARJO insets{XR_TYPE_SYSTEM_FOVEATED_RENDERING_PROPERTIES_VARJO,
+                                                        nullptr, 7};
         XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &insets};
         REQUIRE(xrGetSystemProperties(told.instance, told.system, &properties) == XR_SUCCESS);
         CHECK(insets.supportsFoveatedRendering == expected);
@@ -170,11 +194,15 @@ TEST_CASE("a session draws as many views as it began with; the log says where th
     std::string names;
     for (const auto& view : line["layers"][0]["views"]) { names += view["view"].get<std::string>() + " "; }
     CHECK(names == "left right left_inset right_inset ");
-    for (const std::uint32_t count : {0u, 2u, 3u}) { CHECK(made.showViews(count) == XR_ERROR_VALIDATION_FAILURE); }
+    for (const std::uint32_t count : {0u, 2u, 3u}) {
+        CHECK(made.showViews(count) == XR_ERROR_VALIDATION_FAILURE);
+    }
     CHECK(made.showViews() == XR_SUCCESS);
 }
 
-TEST_CASE("a session in stereo draws no insets, though the headset has them, and none begins with what the program may not name") {
+TEST_CASE(
+    "a session in stereo draws no insets, though the headset has them, and none begins with what the program "
+    "may not name") {
     {
         const SessionFixture plain;
         const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kInset};
@@ -185,9 +213,13 @@ TEST_CASE("a session in stereo draws no insets, though the headset has them, and
     const XrSwapchain colour = stereo.makeSwapchain();
     stereo.turn(colour);
     std::array<XrCompositionLayerProjectionView, 4> views{};
-    views.fill(
-        {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, kIdentity, {-0.8f, 0.8f, 0.8f, -0.8f}, {colour, {{0, 0}, {64, 32}}, 0}});
-    XrCompositionLayerProjection layer{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, stereo.local, 4, views.data()};
+    views.fill({XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
+                nullptr,
+                kIdentity,
+                {-0.8f, 0.8f, 0.8f, -0.8f},
+                {colour, {{0, 0}, {64, 32}}, 0}});
+    XrCompositionLayerProjection layer{
+        XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, stereo.local, 4, views.data()};
     CHECK(stereo.show(&layer) == XR_ERROR_VALIDATION_FAILURE);
     layer.viewCount = 2;
     CHECK(stereo.show(&layer) == XR_SUCCESS);
@@ -201,17 +233,19 @@ TEST_CASE("the wearer sees each inset in the place of what its view shows there"
     REQUIRE(ahead.size_px == glm::uvec2(128, 64));
     for (const auto& [first, colour] : {std::pair(0u, 'g'), std::pair(64u, 'b')}) {
         for (const std::uint32_t row : {20u, 32u, 43u}) {
-            CHECK(these(colourAt(ahead, first + 19, row), colourAt(ahead, first + 20, row), colourAt(ahead, first + 43, row)) ==
-                  these('r', colour, colour));
+            CHECK(these(colourAt(ahead, first + 19, row), colourAt(ahead, first + 20, row),
+                        colourAt(ahead, first + 43, row)) == these('r', colour, colour));
             CHECK(colourAt(ahead, first + 44, row) == 'r');
         }
         for (const std::uint32_t column : {0u, 32u, 63u}) {
-            CHECK(these(colourAt(ahead, first + column, 19), colourAt(ahead, first + column, 44)) == these('r', 'r'));
+            CHECK(these(colourAt(ahead, first + column, 19), colourAt(ahead, first + column, 44)) ==
+                  these('r', 'r'));
         }
     }
     // From 35 degrees to the left to 5 to the right: 9.6 to 34.8.
     const simulated::RgbPicture aside = simulated::readPng(painted.written / "frame_000002.png");
-    for (const auto& [column, colour] : {std::pair(8u, 'r'), std::pair(10u, 'g'), std::pair(34u, 'g'), std::pair(35u, 'r')}) {
+    for (const auto& [column, colour] :
+         {std::pair(8u, 'r'), std::pair(10u, 'g'), std::pair(34u, 'g'), std::pair(35u, 'r')}) {
         CHECK(colourAt(aside, column, 32) == colour);
     }
 }
@@ -220,7 +254,8 @@ TEST_CASE("no lens hides anything of an inset") {
     const QuadFixture made("frames none\nvisibility-mask on\n");
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     const auto get = [&](XrViewConfigurationType type, std::uint32_t view) {
-        return made.XR(xrGetVisibilityMaskKHR)(made.session, type, view, XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask);
+        return made.XR(xrGetVisibilityMaskKHR)(made.session, type, view,
+                                               XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask);
     };
     REQUIRE(get(kInset, 1) == XR_SUCCESS);
     CHECK(mask.indexCountOutput > 0);

@@ -32,21 +32,25 @@ XrResult tryScript(const std::string& script, const Extensions& extensions = {})
     return tryInstance(instanceInfo(extensions));
 }
 
-TEST_CASE("the library shows one function, which negotiates version 1, and 1.1 or what its loader can do with") {
+TEST_CASE(
+    "the library shows one function, which negotiates version 1, and 1.1 or what its loader can do with") {
     const Direct runtime;
     // A symbol that is found belongs to another library, on which this one depends.
     for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) {
         Dl_info owner{};
         void* const found = dlsym(runtime.library, name);
-        CHECK((found == nullptr || (dladdr(found, &owner) != 0 && std::strstr(owner.dli_fname, "binosplat") == nullptr)));
+        CHECK((found == nullptr ||
+               (dladdr(found, &owner) != 0 && std::strstr(owner.dli_fname, "binosplat") == nullptr)));
     }
     LoaderInfo info;
     RuntimeRequest request;
     const auto negotiate = [&] { return runtime.negotiate(&info, &request); };
-    checkChanges(negotiate, XR_ERROR_INITIALIZATION_FAILED, to(info.type, 2), to(info.version, 2), to(info.size, 8));
-    CHECK(with(info.most_interface, 2, [&] { return with(info.least_interface, 2, negotiate); }) == XR_ERROR_INITIALIZATION_FAILED);
-    checkChanges(negotiate, XR_ERROR_INITIALIZATION_FAILED, to(info.least_api, XR_MAKE_VERSION(2, 0, 0)), to(request.type, 1),
-                 to(request.size, 8));
+    checkChanges(negotiate, XR_ERROR_INITIALIZATION_FAILED, to(info.type, 2), to(info.version, 2),
+                 to(info.size, 8));
+    CHECK(with(info.most_interface, 2, [&] { return with(info.least_interface, 2, negotiate); }) ==
+          XR_ERROR_INITIALIZATION_FAILED);
+    checkChanges(negotiate, XR_ERROR_INITIALIZATION_FAILED, to(info.least_api, XR_MAKE_VERSION(2, 0, 0)),
+                 to(request.type, 1), to(request.size, 8));
     CHECK(runtime.negotiate(nullptr, nullptr) == XR_ERROR_INITIALIZATION_FAILED);
     CHECK(XR_VERSION_MAJOR(runtime.api) == 1);
     CHECK(XR_VERSION_MINOR(runtime.api) == 1);
@@ -62,18 +66,24 @@ TEST_CASE("the library shows one function, which negotiates version 1, and 1.1 o
     CHECK(enumerateLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
 }
 
-TEST_CASE("extensions are listed in two calls, and enabled alone, and all, some twice, with a session that draws and one that does not") {
+TEST_CASE(
+    "extensions are listed in two calls, and enabled alone, and all, some twice, with a session that draws "
+    "and one that does not") {
     Extensions all;
     std::vector<XrExtensionProperties> properties;
     {
         const Headset headset(kQuietScript);
-        const auto list = [](auto... step) { return xrEnumerateInstanceExtensionProperties(nullptr, step...); };
+        const auto list = [](auto... step) {
+            return xrEnumerateInstanceExtensionProperties(nullptr, step...);
+        };
         properties = checkList<XrExtensionProperties>(list, {XR_TYPE_EXTENSION_PROPERTIES});
         std::uint32_t count = 0;
-        CHECK(xrEnumerateInstanceExtensionProperties("XR_APILAYER_nobody_nothing", 0, &count, nullptr) == XR_ERROR_API_LAYER_NOT_PRESENT);
+        CHECK(xrEnumerateInstanceExtensionProperties("XR_APILAYER_nobody_nothing", 0, &count, nullptr) ==
+              XR_ERROR_API_LAYER_NOT_PRESENT);
     }
     for (const XrExtensionProperties& property : properties) {
-        CHECK_MESSAGE(tryScript(kQuietScript, {property.extensionName}) == XR_SUCCESS, std::string(property.extensionName));
+        CHECK_MESSAGE(tryScript(kQuietScript, {property.extensionName}) == XR_SUCCESS,
+                      std::string(property.extensionName));
         all.push_back(property.extensionName);
     }
     const std::set<std::string> names(all.begin(), all.end());
@@ -81,7 +91,8 @@ TEST_CASE("extensions are listed in two calls, and enabled alone, and all, some 
                              XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_MND_HEADLESS_EXTENSION_NAME}) {
         CHECK_MESSAGE(names.contains(name), name);
     }
-    CHECK(tryScript("extension XR_KHR_visibility_mask off\n", {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME}) == XR_ERROR_EXTENSION_NOT_PRESENT);
+    CHECK(tryScript("extension XR_KHR_visibility_mask off\n", {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME}) ==
+          XR_ERROR_EXTENSION_NOT_PRESENT);
     // The fixture itself enables three of them.
     const SessionFixture made(kQuietScript, all);
     made.focus();
@@ -92,37 +103,44 @@ TEST_CASE("extensions are listed in two calls, and enabled alone, and all, some 
     CHECK(xrCreateSession(made.instance, &info, &headless) == XR_SUCCESS);
 }
 
-TEST_CASE("instances are of 1.0 and 1.1, whatever the patch; one is refused for what its description lacks, or its script") {
+TEST_CASE(
+    "instances are of 1.0 and 1.1, whatever the patch; one is refused for what its description lacks, or its "
+    "script") {
     {
         const Headset headset(kQuietScript);
         const Direct runtime;
         XrInstance instance = XR_NULL_HANDLE;
         XrInstanceCreateInfo info = instanceInfo({});
         XrApplicationInfo& application = info.applicationInfo;
-        checkEach(XR_ERROR_VALIDATION_FAILURE, {xrCreateInstance(nullptr, &instance), xrCreateInstance(&info, nullptr)});
+        checkEach(XR_ERROR_VALIDATION_FAILURE,
+                  {xrCreateInstance(nullptr, &instance), xrCreateInstance(&info, nullptr)});
         for (const PFN_xrGetInstanceProcAddr find : {xrGetInstanceProcAddr, runtime.get}) {
             const auto make = [&] { return tryInstance(info, find); };
-            checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.type, XR_TYPE_SYSTEM_GET_INFO), to(info.createFlags, 1),
-                         to(application.engineName[0], '\xFF'));
+            checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.type, XR_TYPE_SYSTEM_GET_INFO),
+                         to(info.createFlags, 1), to(application.engineName[0], '\xFF'));
             CHECK(with(application.applicationName[0], '\0', make) == XR_ERROR_NAME_INVALID);
-            checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED, to(application.apiVersion, XR_MAKE_VERSION(1, 2, 0)),
-                         to(application.apiVersion, 0));
+            checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED,
+                         to(application.apiVersion, XR_MAKE_VERSION(1, 2, 0)), to(application.apiVersion, 0));
         }
         const auto make = [&] { return tryInstance(info, runtime.get); };
-        checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED, to(application.apiVersion, XR_MAKE_VERSION(2, 0, 0)),
+        checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED,
+                     to(application.apiVersion, XR_MAKE_VERSION(2, 0, 0)),
                      to(application.apiVersion, XR_MAKE_VERSION(0, 9, 0)), to(application.apiVersion, 1));
-        checkChanges(make, XR_SUCCESS, to(application.apiVersion, XR_MAKE_VERSION(1, 0, 34)), to(application.apiVersion, k1_1),
+        checkChanges(make, XR_SUCCESS, to(application.apiVersion, XR_MAKE_VERSION(1, 0, 34)),
+                     to(application.apiVersion, k1_1),
                      to(application.apiVersion, XR_MAKE_VERSION(1, 1, 4711)));
         // Names without a terminator.
         for (char* const name : {application.engineName, application.applicationName}) {
             info = instanceInfo({});
-            std::memset(name, 'a', name == application.engineName ? sizeof application.engineName : sizeof application.applicationName);
+            std::memset(name, 'a',
+                        name == application.engineName ? sizeof application.engineName
+                                                       : sizeof application.applicationName);
             CHECK(make() == XR_ERROR_NAME_INVALID);
         }
     }
     CHECK(tryScript(kQuietScript, {"XR_KHR_nothing"}) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    checkEach(XR_ERROR_RUNTIME_FAILURE,
-              {tryScript("profile khr/simple_controller\npress left squeeze 0 1\n"), tryScript("hed 0 position 0 0 0\n")});
+    checkEach(XR_ERROR_RUNTIME_FAILURE, {tryScript("profile khr/simple_controller\npress left squeeze 0 1\n"),
+                                         tryScript("hed 0 position 0 0 0\n")});
 }
 
 TEST_CASE("layers are the loader's business, whatever they are called") {
@@ -133,7 +151,8 @@ TEST_CASE("layers are the loader's business, whatever they are called") {
     info.enabledApiLayerNames = &name;
     CHECK(tryInstance(info, Direct().get) == XR_SUCCESS);
     // The loader requires the layer to exist, so this one does; the loader passes its name on.
-    for (const auto& layer : checkList<XrApiLayerProperties>(xrEnumerateApiLayerProperties, {XR_TYPE_API_LAYER_PROPERTIES})) {
+    for (const auto& layer :
+         checkList<XrApiLayerProperties>(xrEnumerateApiLayerProperties, {XR_TYPE_API_LAYER_PROPERTIES})) {
         name = layer.layerName;
         CHECK(tryInstance(info) == XR_SUCCESS);
     }
@@ -147,12 +166,16 @@ TEST_CASE("the environment is read again for each instance") {
     setenv("SIMULATED_OPENXR_SCRIPT", (headset.folder / "other.script").c_str(), 1);
     CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_SUCCESS);
     setenv("SIMULATED_OPENXR_CLOCK", "sundial", 1);
-    const std::string explained = explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
-    CHECK(explained == "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or real\n");
+    const std::string explained =
+        explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
+    CHECK(explained ==
+          "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or "
+          "real\n");
     for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK"}) { unsetenv(name); }
 }
 
-TEST_CASE("refusals are explained, counted where they come again, and not those of the loader's own questions") {
+TEST_CASE(
+    "refusals are explained, counted where they come again, and not those of the loader's own questions") {
     const std::string refused = explainedBy([] {
         const Headset headset(kQuietScript);
         const Direct runtime;
@@ -164,7 +187,9 @@ TEST_CASE("refusals are explained, counted where they come again, and not those 
             CHECK(runtime.get(XR_NULL_HANDLE, name, &found) == XR_ERROR_HANDLE_INVALID);
         }
     });
-    CHECK(refused == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: createFlags is 1, no flags are known\n");
+    CHECK(refused ==
+          "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: createFlags is 1, no flags are "
+          "known\n");
 
     const std::string repeated = explainedBy([] {
         const DirectInstance made(k1_0, {});
@@ -172,18 +197,26 @@ TEST_CASE("refusals are explained, counted where they come again, and not those 
         const auto toPath = made.XR(xrStringToPath);
         for (int i = 0; i < 125; ++i) {
             CHECK(toPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-            if (i % 20 == 0) { CHECK(toPath(made.instance, "/a/../b", &path) == XR_ERROR_PATH_FORMAT_INVALID); }
+            if (i % 20 == 0) {
+                CHECK(toPath(made.instance, "/a/../b", &path) == XR_ERROR_PATH_FORMAT_INVALID);
+            }
         }
     });
-    const std::string line = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: 'no slash' is not a well-formed path";
-    const std::string other = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '/a/../b' is not a well-formed path";
-    CHECK(repeated == line + "\n" + other + "\n" + line + " (10 times so far)\n" + line + " (100 times so far)\n" + other +
-                          " (7 times in all)\n" + line + " (125 times in all)\n");
+    const std::string line =
+        "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: 'no slash' is not a well-formed "
+        "path";
+    const std::string other =
+        "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '/a/../b' is not a well-formed "
+        "path";
+    CHECK(repeated == line + "\n" + other + "\n" + line + " (10 times so far)\n" + line +
+                          " (100 times so far)\n" + other + " (7 times in all)\n" + line +
+                          " (125 times in all)\n");
 }
 
 TEST_CASE("an instance empties the folder of an earlier run, one that is refused leaves it alone") {
     const Headset headset(kQuietScript);
-    const std::filesystem::path log = headset.written / "frames.jsonl", picture = headset.written / "frame_000003.png";
+    const std::filesystem::path log = headset.written / "frames.jsonl",
+                                picture = headset.written / "frame_000003.png";
     std::filesystem::create_directories(headset.written);
     std::ofstream(picture) << "x";
     std::ofstream(log) << "{\"frame\":0,\"display_time_ns\":1,\"picture\":\"frame_000003.png\"}\n";
@@ -199,9 +232,10 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
     std::ofstream(headset.folder / "victim") << "keep me";
     std::filesystem::remove(log);
     std::filesystem::create_symlink(headset.folder / "victim", log);
-    const std::string explained = explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
-    CHECK(explained ==
-          "simulated runtime: xrCreateInstance: " + log.string() + ": not what an earlier run left here, must be moved elsewhere\n");
+    const std::string explained =
+        explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
+    CHECK(explained == "simulated runtime: xrCreateInstance: " + log.string() +
+                           ": not what an earlier run left here, must be moved elsewhere\n");
     CHECK(std::filesystem::file_size(headset.folder / "victim") == 7);
 }
 
@@ -212,19 +246,23 @@ TEST_CASE("functions are found by name, those of extensions and of 1.1 where the
         CHECK(xrGetInstanceProcAddr(made.instance, "xrWaitFrame", &found) == XR_SUCCESS);
         CHECK((found != nullptr));
         CHECK(made.has("xrGetVisibilityMaskKHR"));
-        CHECK(xrGetInstanceProcAddr(made.instance, "xrGetVulkanGraphicsDeviceKHR", &found) == XR_ERROR_FUNCTION_UNSUPPORTED);
+        CHECK(xrGetInstanceProcAddr(made.instance, "xrGetVulkanGraphicsDeviceKHR", &found) ==
+              XR_ERROR_FUNCTION_UNSUPPORTED);
         CHECK((found == nullptr));
         CHECK(xrGetInstanceProcAddr(made.instance, "xrMakeCoffee", &found) == XR_ERROR_FUNCTION_UNSUPPORTED);
         CHECK(xrGetInstanceProcAddr(XR_NULL_HANDLE, "xrCreateSession", &found) == XR_ERROR_HANDLE_INVALID);
         CHECK(xrGetInstanceProcAddr(XR_NULL_HANDLE, "xrCreateInstance", &found) == XR_SUCCESS);
     }
     for (const auto& [version, extensions, of_1_1, of_extension] :
-         {std::tuple(k1_0, Extensions{}, false, false), std::tuple(k1_0, Extensions{XR_KHR_LOCATE_SPACES_EXTENSION_NAME}, false, true),
+         {std::tuple(k1_0, Extensions{}, false, false),
+          std::tuple(k1_0, Extensions{XR_KHR_LOCATE_SPACES_EXTENSION_NAME}, false, true),
           std::tuple(k1_1, Extensions{}, true, false)}) {
         const DirectInstance made(version, extensions);
-        CHECK(these(made.has("xrLocateSpaces"), made.has("xrLocateSpacesKHR")) == these(of_1_1, of_extension));
-        for (const char* name : {"xrCreateDebugUtilsMessengerEXT", "xrConvertTimespecTimeToTimeKHR", "xrCreateHandTrackerEXT",
-                                 "xrGetDisplayRefreshRateFB", "xrSetInputDeviceActiveEXT"}) {
+        CHECK(these(made.has("xrLocateSpaces"), made.has("xrLocateSpacesKHR")) ==
+              these(of_1_1, of_extension));
+        for (const char* name :
+             {"xrCreateDebugUtilsMessengerEXT", "xrConvertTimespecTimeToTimeKHR", "xrCreateHandTrackerEXT",
+              "xrGetDisplayRefreshRateFB", "xrSetInputDeviceActiveEXT"}) {
             CHECK_FALSE_MESSAGE(made.has(name), name);
         }
     }
@@ -248,24 +286,28 @@ TEST_CASE_FIXTURE(InstanceFixture, "an instance says what it runs on, has events
 TEST_CASE("values have names, also those of 1.1") {
     const DirectInstance made(k1_1, {});
     char text[XR_MAX_RESULT_STRING_SIZE];
-    for (const auto& [value, name] : {std::pair(XR_ERROR_LAYER_INVALID, "XR_ERROR_LAYER_INVALID"),
-                                      std::pair(static_cast<XrResult>(-31415), "XR_UNKNOWN_FAILURE_-31415"),
-                                      std::pair(static_cast<XrResult>(31415), "XR_UNKNOWN_SUCCESS_31415"),
-                                      std::pair(static_cast<XrResult>(-1000710001), "XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED"),
-                                      std::pair(static_cast<XrResult>(-1000710000), "XR_ERROR_PERMISSION_INSUFFICIENT")}) {
+    for (const auto& [value, name] :
+         {std::pair(XR_ERROR_LAYER_INVALID, "XR_ERROR_LAYER_INVALID"),
+          std::pair(static_cast<XrResult>(-31415), "XR_UNKNOWN_FAILURE_-31415"),
+          std::pair(static_cast<XrResult>(31415), "XR_UNKNOWN_SUCCESS_31415"),
+          std::pair(static_cast<XrResult>(-1000710001), "XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED"),
+          std::pair(static_cast<XrResult>(-1000710000), "XR_ERROR_PERMISSION_INSUFFICIENT")}) {
         CHECK(made.XR(xrResultToString)(made.instance, value, text) == XR_SUCCESS);
         CHECK(std::string(text) == name);
     }
     CHECK(made.XR(xrResultToString)(made.instance, XR_SUCCESS, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    for (const auto& [value, name] : {std::pair(XR_TYPE_SWAPCHAIN_CREATE_INFO, "XR_TYPE_SWAPCHAIN_CREATE_INFO"),
-                                      std::pair(static_cast<XrStructureType>(31415), "XR_UNKNOWN_STRUCTURE_TYPE_31415"),
-                                      std::pair(static_cast<XrStructureType>(1000471001), "XR_TYPE_SPACE_LOCATIONS")}) {
+    for (const auto& [value, name] :
+         {std::pair(XR_TYPE_SWAPCHAIN_CREATE_INFO, "XR_TYPE_SWAPCHAIN_CREATE_INFO"),
+          std::pair(static_cast<XrStructureType>(31415), "XR_UNKNOWN_STRUCTURE_TYPE_31415"),
+          std::pair(static_cast<XrStructureType>(1000471001), "XR_TYPE_SPACE_LOCATIONS")}) {
         CHECK(made.XR(xrStructureTypeToString)(made.instance, value, text) == XR_SUCCESS);
         CHECK(std::string(text) == name);
     }
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "a system is one head-mounted display; a next chain may hold what is unknown, but it must end") {
+TEST_CASE_FIXTURE(
+    InstanceFixture,
+    "a system is one head-mounted display; a next chain may hold what is unknown, but it must end") {
     XrSystemGetInfo info{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
     XrSystemId id = XR_NULL_SYSTEM_ID;
     const auto get = [&] { return xrGetSystem(instance, &info, &id); };
@@ -289,29 +331,41 @@ TEST_CASE_FIXTURE(InstanceFixture, "a system is one head-mounted display; a next
 
 TEST_CASE_FIXTURE(InstanceFixture, "views are two, of the script's size, and opaque") {
     std::uint32_t count = 0;
-    const auto listTypes = [&](auto... step) { return xrEnumerateViewConfigurations(instance, system, step...); };
+    const auto listTypes = [&](auto... step) {
+        return xrEnumerateViewConfigurations(instance, system, step...);
+    };
     CHECK(checkList<XrViewConfigurationType>(listTypes) == std::vector{kStereo});
     CHECK(xrEnumerateViewConfigurations(instance, 0, 0, &count, nullptr) == XR_ERROR_SYSTEM_INVALID);
     XrViewConfigurationProperties properties{XR_TYPE_VIEW_CONFIGURATION_PROPERTIES};
     CHECK(xrGetViewConfigurationProperties(instance, system, kStereo, &properties) == XR_SUCCESS);
     CHECK(properties.fovMutable == XR_TRUE);
     const auto mono = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
-    CHECK(xrGetViewConfigurationProperties(instance, system, mono, &properties) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+    CHECK(xrGetViewConfigurationProperties(instance, system, mono, &properties) ==
+          XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
     for (const auto none :
-         {XR_VIEW_CONFIGURATION_TYPE_MAX_ENUM, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO, static_cast<XrViewConfigurationType>(0)}) {
-        CHECK(xrGetViewConfigurationProperties(instance, system, none, &properties) == XR_ERROR_VALIDATION_FAILURE);
+         {XR_VIEW_CONFIGURATION_TYPE_MAX_ENUM, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO,
+          static_cast<XrViewConfigurationType>(0)}) {
+        CHECK(xrGetViewConfigurationProperties(instance, system, none, &properties) ==
+              XR_ERROR_VALIDATION_FAILURE);
     }
 
-    const auto listViews = [&](auto... step) { return xrEnumerateViewConfigurationViews(instance, system, kStereo, step...); };
+    const auto listViews = [&](auto... step) {
+        return xrEnumerateViewConfigurationViews(instance, system, kStereo, step...);
+    };
     const auto views = checkList<XrViewConfigurationView>(listViews, {XR_TYPE_VIEW_CONFIGURATION_VIEW});
     REQUIRE(views.size() == 2);
     CHECK(views[1].recommendedImageRectWidth == 64);
-    CHECK(xrEnumerateViewConfigurationViews(instance, system, mono, 0, &count, nullptr) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+    CHECK(xrEnumerateViewConfigurationViews(instance, system, mono, 0, &count, nullptr) ==
+          XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
 
-    const auto listModes = [&](auto... step) { return xrEnumerateEnvironmentBlendModes(instance, system, kStereo, step...); };
+    const auto listModes = [&](auto... step) {
+        return xrEnumerateEnvironmentBlendModes(instance, system, kStereo, step...);
+    };
     CHECK(checkList<XrEnvironmentBlendMode>(listModes) == std::vector{XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
-    CHECK(xrEnumerateEnvironmentBlendModes(instance, 5, kStereo, 0, &count, nullptr) == XR_ERROR_SYSTEM_INVALID);
-    CHECK(xrEnumerateEnvironmentBlendModes(instance, system, mono, 0, &count, nullptr) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+    CHECK(xrEnumerateEnvironmentBlendModes(instance, 5, kStereo, 0, &count, nullptr) ==
+          XR_ERROR_SYSTEM_INVALID);
+    CHECK(xrEnumerateEnvironmentBlendModes(instance, system, mono, 0, &count, nullptr) ==
+          XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
 }
 
 TEST_CASE_FIXTURE(InstanceFixture, "paths are the same for the same text, and back, and have a form") {
@@ -332,11 +386,12 @@ TEST_CASE_FIXTURE(InstanceFixture, "paths are the same for the same text, and ba
     for (const char* good : {"/a", "/a/b.c-d_e/9", "/.a/..b", longest.c_str()}) {
         CHECK_MESSAGE(xrStringToPath(instance, good, &made) == XR_SUCCESS, good);
     }
-    for (const char* bad :
-         {"", "/", "a", "a/b", "/a/", "//a", "/a//b", "/A", "/a b", "/a/.", "/..", "/a/.../b", "/\xC3\xA4", "/a\n", longer.c_str()}) {
+    for (const char* bad : {"", "/", "a", "a/b", "/a/", "//a", "/a//b", "/A", "/a b", "/a/.", "/..",
+                            "/a/.../b", "/\xC3\xA4", "/a\n", longer.c_str()}) {
         CHECK_MESSAGE(xrStringToPath(instance, bad, &made) == XR_ERROR_PATH_FORMAT_INVALID, bad);
     }
-    checkEach(XR_ERROR_VALIDATION_FAILURE, {xrStringToPath(instance, nullptr, &made), xrStringToPath(instance, "/a", nullptr)});
+    checkEach(XR_ERROR_VALIDATION_FAILURE,
+              {xrStringToPath(instance, nullptr, &made), xrStringToPath(instance, "/a", nullptr)});
 }
 
 }  // SUITE(simulated_instance)

@@ -10,7 +10,8 @@ using Texel = std::array<std::uint8_t, 4>;
 
 constexpr float kPi = 3.14159265f;
 constexpr auto kNotValid = XR_ERROR_VALIDATION_FAILURE;
-const Extensions kExtensions{XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_EQUIRECT2_EXTENSION_NAME,
+const Extensions kExtensions{XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME,
+                             XR_KHR_COMPOSITION_LAYER_EQUIRECT2_EXTENSION_NAME,
                              XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME};
 
 struct FlatFixture : SessionFixture {
@@ -28,9 +29,13 @@ struct FlatFixture : SessionFixture {
         turn(depth);
         const XrRect2Di whole{{0, 0}, {64, 32}};
         for (int eye = 0; eye < 2; ++eye) {
-            depths[eye] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, {depth, whole, 0}, 0, 1, 0.1f, 100};
-            views[eye] = {
-                XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, &depths[eye], kIdentity, {-0.8f, 0.8f, 0.8f, -0.8f}, {colour, whole, 0}};
+            depths[eye] = {
+                XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, {depth, whole, 0}, 0, 1, 0.1f, 100};
+            views[eye] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
+                          &depths[eye],
+                          kIdentity,
+                          {-0.8f, 0.8f, 0.8f, -0.8f},
+                          {colour, whole, 0}};
         }
         projection.space = quad.space = local;
         projection.viewCount = 2;
@@ -72,13 +77,16 @@ struct SurroundFixture : SessionFixture {
     }
     // The colour in the middle of the left eye's last picture.
     Texel seen() const {
-        const simulated::RgbPicture both = simulated::readPng(written / logged().back()["picture"].get<std::string>());
+        const simulated::RgbPicture both =
+            simulated::readPng(written / logged().back()["picture"].get<std::string>());
         const std::size_t i = 3 * (8 * std::size_t{both.size_px.x} + 8);
         return {both.bytes[i], both.bytes[i + 1], both.bytes[i + 2], 255};
     }
 };
 
-TEST_CASE("the room is a layer where the script and the program want it, seen while neither it nor its passthrough is paused") {
+TEST_CASE(
+    "the room is a layer where the script and the program want it, seen while neither it nor its passthrough "
+    "is paused") {
     struct Room : SurroundFixture {
         Room() : SurroundFixture({XR_FB_PASSTHROUGH_EXTENSION_NAME}, "passthrough on\nroom-colour 0 1 0\n") {}
     } room;
@@ -88,7 +96,8 @@ TEST_CASE("the room is a layer where the script and the program want it, seen wh
     CHECK(create(room.session, &info, &passthrough) == XR_SUCCESS);
     CHECK(create(room.session, &info, &second) == XR_ERROR_FEATURE_ALREADY_CREATED_PASSTHROUGH_FB);
     XrPassthroughLayerCreateInfoFB of_layer{XR_TYPE_PASSTHROUGH_LAYER_CREATE_INFO_FB, nullptr, passthrough,
-                                            XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB, XR_PASSTHROUGH_LAYER_PURPOSE_PROJECTED_FB};
+                                            XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB,
+                                            XR_PASSTHROUGH_LAYER_PURPOSE_PROJECTED_FB};
     XrCompositionLayerPassthroughFB layer{XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB};
     const auto create_layer = room.XR(xrCreatePassthroughLayerFB);
     CHECK(create_layer(room.session, &of_layer, &layer.layerHandle) == XR_ERROR_FEATURE_UNSUPPORTED);
@@ -110,12 +119,15 @@ TEST_CASE("the room is a layer where the script and the program want it, seen wh
     CHECK(room.show(&layer) == XR_ERROR_HANDLE_INVALID);
 }
 
-TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses of length 1, and as many as the system says") {
+TEST_CASE_FIXTURE(
+    FlatFixture,
+    "layers are of a known type, some eye's, of poses of length 1, and as many as the system says") {
     const auto showQuad = [&] { return show(&quad); };
     const auto showViews = [&] { return show(&projection); };
     checkEach(XR_SUCCESS, {showViews(), showQuad()});
     CHECK(frame({headerOf(projection), headerOf(quad)}).shouldRender == XR_TRUE);
-    checkEach(XR_ERROR_LAYER_INVALID, {show(nullptr), with(quad.type, XR_TYPE_COMPOSITION_LAYER_CUBE_KHR, showQuad)});
+    checkEach(XR_ERROR_LAYER_INVALID,
+              {show(nullptr), with(quad.type, XR_TYPE_COMPOSITION_LAYER_CUBE_KHR, showQuad)});
     CHECK(with(quad.layerFlags, 1 << 20, showQuad) == kNotValid);
     CHECK(with(quad.space, XR_NULL_HANDLE, showQuad) == XR_ERROR_HANDLE_INVALID);
     CHECK(with(quad.pose.orientation.w, 0, showQuad) == XR_ERROR_POSE_INVALID);
@@ -125,12 +137,14 @@ TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses
     checkChanges(showQuad, XR_SUCCESS, to(quad.size, {0, 0}), to(quad.size, {1, 0}));
     checkChanges(showQuad, kNotValid, to(quad.size, {1, -1}), to(quad.size, {NAN, 1}));
     // A view for each eye.
-    checkChanges(showViews, kNotValid, to(projection.viewCount, 1), to(projection.viewCount, 3), to(projection.views, nullptr),
-                 to(views[0].type, XR_TYPE_VIEW), to(views[0].fov.angleRight, 1.6f));
+    checkChanges(showViews, kNotValid, to(projection.viewCount, 1), to(projection.viewCount, 3),
+                 to(projection.views, nullptr), to(views[0].type, XR_TYPE_VIEW),
+                 to(views[0].fov.angleRight, 1.6f));
     CHECK(with(views[1].pose.orientation, {1, 1, 0, 0}, showViews) == XR_ERROR_POSE_INVALID);
     // Depth is checked like colour.
     CHECK(with(depths[0].subImage.imageRect.extent.width, 65, showViews) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    checkChanges(showViews, kNotValid, to(depths[0].minDepth, -0.5f), to(depths[0].maxDepth, 2), to(depths[0].nearZ, depths[0].farZ));
+    checkChanges(showViews, kNotValid, to(depths[0].minDepth, -0.5f), to(depths[0].maxDepth, 2),
+                 to(depths[0].nearZ, depths[0].farZ));
     CHECK(with(depths[1].subImage.swapchain, colour, showViews) == XR_ERROR_LAYER_INVALID);
     CHECK(showViews() == XR_SUCCESS);
 
@@ -141,21 +155,25 @@ TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses
     REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
     CHECK(endFrame(time, layers) == XR_ERROR_LAYER_LIMIT_EXCEEDED);
     layers.pop_back();
-    const XrFrameEndInfo nothing{XR_TYPE_FRAME_END_INFO, nullptr, time, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 1, nullptr};
+    const XrFrameEndInfo nothing{XR_TYPE_FRAME_END_INFO,           nullptr, time,
+                                 XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 1,       nullptr};
     CHECK(xrEndFrame(session, &nothing) == kNotValid);
     CHECK(endFrame(time, layers) == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(FlatFixture, "rectangles stay inside their image, of a swapchain that has shown one before") {
+TEST_CASE_FIXTURE(FlatFixture,
+                  "rectangles stay inside their image, of a swapchain that has shown one before") {
     const auto showQuad = [&] { return show(&quad); };
     for (const XrRect2Di& outside :
-         {XrRect2Di{{0, 0}, {65, 32}}, XrRect2Di{{1, 0}, {64, 32}}, XrRect2Di{{0, 1}, {64, 32}}, XrRect2Di{{-1, 0}, {32, 32}},
-          XrRect2Di{{32, 0}, {-32, 32}}, XrRect2Di{{1, 0}, {INT32_MAX, 32}}, XrRect2Di{{65, 0}, {0, 0}}, XrRect2Di{{0, 0}, {32, -1}}}) {
+         {XrRect2Di{{0, 0}, {65, 32}}, XrRect2Di{{1, 0}, {64, 32}}, XrRect2Di{{0, 1}, {64, 32}},
+          XrRect2Di{{-1, 0}, {32, 32}}, XrRect2Di{{32, 0}, {-32, 32}}, XrRect2Di{{1, 0}, {INT32_MAX, 32}},
+          XrRect2Di{{65, 0}, {0, 0}}, XrRect2Di{{0, 0}, {32, -1}}}) {
         INFO("outside.offset.x ", outside.offset.x, ", outside.extent.width ", outside.extent.width);
         CHECK(with(quad.subImage.imageRect, outside, showQuad) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     }
     // Empty rectangles exceed nothing.
-    for (const XrRect2Di& inside : {XrRect2Di{{63, 31}, {1, 1}}, XrRect2Di{{0, 0}, {0, 32}}, XrRect2Di{{64, 32}, {0, 0}}}) {
+    for (const XrRect2Di& inside :
+         {XrRect2Di{{63, 31}, {1, 1}}, XrRect2Di{{0, 0}, {0, 32}}, XrRect2Di{{64, 32}, {0, 0}}}) {
         CHECK(with(quad.subImage.imageRect, inside, showQuad) == XR_SUCCESS);
     }
     CHECK(with(quad.subImage.imageArrayIndex, 1, showQuad) == kNotValid);
@@ -168,9 +186,12 @@ TEST_CASE_FIXTURE(FlatFixture, "rectangles stay inside their image, of a swapcha
     CHECK_MESSAGE(showQuad() == XR_SUCCESS, "the last released image stays");
 }
 
-TEST_CASE("frames are logged, and pictures written for those with layers, also of no pixel, or while every image is held") {
+TEST_CASE(
+    "frames are logged, and pictures written for those with layers, also of no pixel, or while every image "
+    "is held") {
     FlatFixture made(
-        "size 64 32\nframes from 3 to 9\neye left angles -40.10705 34.37747 28.64789 -22.91831\nat 0 gpu-load 1000 ms-per-megapixel\n");
+        "size 64 32\nframes from 3 to 9\neye left angles -40.10705 34.37747 28.64789 -22.91831\nat 0 "
+        "gpu-load 1000 ms-per-megapixel\n");
     made.projection.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
     made.depths[0].nearZ = INFINITY;
     made.quad.eyeVisibility = XR_EYE_VISIBILITY_LEFT;
@@ -179,16 +200,22 @@ TEST_CASE("frames are logged, and pictures written for those with layers, also o
     CHECK_FALSE(std::filesystem::exists(made.written / "frame_000002.png"));
     const std::vector<Json> lines = made.logged();
     REQUIRE(lines.size() == 4);
-    CHECK(lines[3] == expecting(lines[3], {{"frame", 3}, {"session_state", "FOCUSED"}, {"should_render", true}, {"blend_mode", "OPAQUE"}}));
+    CHECK(lines[3] == expecting(lines[3], {{"frame", 3},
+                                           {"session_state", "FOCUSED"},
+                                           {"should_render", true},
+                                           {"blend_mode", "OPAQUE"}}));
     CHECK(lines[3]["gpu_ms"].get<double>() == doctest::Approx(2 * 2.048));  // for both views
-    CHECK(these(lines[3]["eyes"][0]["fov"]["left"].get<double>(), lines[2].contains("picture")) == these(doctest::Approx(-0.7), false));
+    CHECK(these(lines[3]["eyes"][0]["fov"]["left"].get<double>(), lines[2].contains("picture")) ==
+          these(doctest::Approx(-0.7), false));
     REQUIRE(lines[3]["layers"].size() == 2);
     const Json &projection = lines[3]["layers"][0], &quad = lines[3]["layers"][1];
-    CHECK(projection == expecting(projection, {{"type", "projection"}, {"space", "LOCAL"}, {"flags", {"blend_texture_source_alpha"}}}));
+    CHECK(projection ==
+          expecting(projection,
+                    {{"type", "projection"}, {"space", "LOCAL"}, {"flags", {"blend_texture_source_alpha"}}}));
     const Json& views = projection["views"];
     CHECK(these(views.size(), views[1]["rect"]) == these(2, Json{0, 0, 64, 32}));
-    CHECK(views[0] ==
-          expecting(views[0], {{"format", "VK_FORMAT_R8G8B8A8_SRGB"}, {"depth", {{"format", "VK_FORMAT_D32_SFLOAT"}, {"far", 100.0}}}}));
+    CHECK(views[0] == expecting(views[0], {{"format", "VK_FORMAT_R8G8B8A8_SRGB"},
+                                           {"depth", {{"format", "VK_FORMAT_D32_SFLOAT"}, {"far", 100.0}}}}));
     CHECK(views[0]["depth"]["near"].is_null());  // infinite
     CHECK_FALSE(projection.contains("size"));
     CHECK(quad == expecting(quad, {{"size", {1.0, 0.5}}, {"eye_visibility", "left"}}));
@@ -212,7 +239,8 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     CHECK(show(&sphere) == XR_SUCCESS);
     CHECK(seen() == Texel{255, 0, 0, 255});
     layer = logged().back()["layers"][0];
-    CHECK(these(layer["type"], layer["upper_angle"].get<double>()) == these("equirect2", doctest::Approx(kPi / 2)));
+    CHECK(these(layer["type"], layer["upper_angle"].get<double>()) ==
+          these("equirect2", doctest::Approx(kPi / 2)));
     makeCube();
     CHECK(show(&cube) == XR_SUCCESS);
     CHECK(seen() == Texel{0, 255, 0, 255});
@@ -237,23 +265,27 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     CHECK(logged().back()["picture"] == "frame_000007.png");
 }
 
-TEST_CASE_FIXTURE(SurroundFixture, "cylinders and spheres have angles, radii and pictures, cubes have cube maps") {
+TEST_CASE_FIXTURE(SurroundFixture,
+                  "cylinders and spheres have angles, radii and pictures, cubes have cube maps") {
     const auto showCylinder = [&] { return show(&cylinder); };
     const auto showSphere = [&] { return show(&sphere); };
     const auto showCube = [&] { return show(&cube); };
     checkChanges(showCylinder, kNotValid, to(cylinder.radius, -1), to(cylinder.radius, NAN));
     CHECK(with(cylinder.radius, INFINITY, showCylinder) == XR_SUCCESS);
     CHECK(with(cylinder.centralAngle, 7, showCylinder) == kNotValid);
-    CHECK(these(with(cylinder.centralAngle, 0, showCylinder), with(cylinder.aspectRatio, 0, showCylinder)) == these(XR_SUCCESS, kNotValid));
+    CHECK(these(with(cylinder.centralAngle, 0, showCylinder), with(cylinder.aspectRatio, 0, showCylinder)) ==
+          these(XR_SUCCESS, kNotValid));
     CHECK(with(cylinder.pose.orientation.w, 0, showCylinder) == XR_ERROR_POSE_INVALID);
     CHECK(with(cylinder.subImage.imageRect.extent.width, 5, showCylinder) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     CHECK(with(cylinder.eyeVisibility, static_cast<XrEyeVisibility>(3), showCylinder) == kNotValid);
     CHECK(with(cylinder.space, XR_NULL_HANDLE, showCylinder) == XR_ERROR_HANDLE_INVALID);
     CHECK(with(cylinder.layerFlags, 1 << 20, showCylinder) == kNotValid);
-    checkChanges(showSphere, kNotValid, to(sphere.radius, -1), to(sphere.centralHorizontalAngle, 7), to(sphere.upperVerticalAngle, 2),
-                 to(sphere.lowerVerticalAngle, -2), to(sphere.subImage.imageArrayIndex, 1));
+    checkChanges(showSphere, kNotValid, to(sphere.radius, -1), to(sphere.centralHorizontalAngle, 7),
+                 to(sphere.upperVerticalAngle, 2), to(sphere.lowerVerticalAngle, -2),
+                 to(sphere.subImage.imageArrayIndex, 1));
     makeCube();
-    CHECK(these(with(cube.swapchain, picture, showCube), with(cube.imageArrayIndex, 1, showCube), with(cube.orientation.w, 0, showCube)) ==
+    CHECK(these(with(cube.swapchain, picture, showCube), with(cube.imageArrayIndex, 1, showCube),
+                with(cube.orientation.w, 0, showCube)) ==
           these(XR_ERROR_LAYER_INVALID, kNotValid, XR_ERROR_POSE_INVALID));
     CHECK(with(cylinder.subImage.swapchain, cube_map, showCylinder) == XR_ERROR_LAYER_INVALID);
     XrSwapchainCreateInfo info = swapchainInfo();
@@ -267,7 +299,8 @@ TEST_CASE_FIXTURE(SurroundFixture, "cylinders and spheres have angles, radii and
 
 TEST_CASE("without their extensions these layers are none, and there are no cube maps") {
     const SurroundFixture plain(Extensions{});
-    for (const XrCompositionLayerBaseHeader* layer : {headerOf(plain.cylinder), headerOf(plain.sphere), headerOf(plain.cube)}) {
+    for (const XrCompositionLayerBaseHeader* layer :
+         {headerOf(plain.cylinder), headerOf(plain.sphere), headerOf(plain.cube)}) {
         CHECK(plain.show(layer) == XR_ERROR_LAYER_INVALID);
     }
     XrSwapchainCreateInfo info = swapchainInfo();

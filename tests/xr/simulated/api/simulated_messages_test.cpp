@@ -4,9 +4,12 @@
 
 SUITE(simulated_messages) {
 
-constexpr auto kError = XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, kInfo = XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT;
-constexpr auto kGeneral = XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, kValidation = XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-constexpr const char* kMistake = "error validation: XR_ERROR_PATH_FORMAT_INVALID in xrStringToPath: 'no slash' is not a well-formed path";
+constexpr auto kError = XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+               kInfo = XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT;
+constexpr auto kGeneral = XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
+               kValidation = XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+constexpr const char* kMistake =
+    "error validation: XR_ERROR_PATH_FORMAT_INVALID in xrStringToPath: 'no slash' is not a well-formed path";
 
 // "info general: ID in FUNCTION: TEXT, in LABEL, of OBJECT"
 XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageTypeFlagsEXT types,
@@ -20,8 +23,12 @@ XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageT
                                    : types == kGeneral  ? "general"
                                                         : "other",
                                    textOf(data->messageId), textOf(data->functionName), data->message);
-    for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) { text += std::string(", in ") + data->sessionLabels[i].labelName; }
-    for (std::uint32_t i = 0; i < data->objectCount; ++i) { text += std::string(", of ") + textOf(data->objects[i].objectName); }
+    for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) {
+        text += std::string(", in ") + data->sessionLabels[i].labelName;
+    }
+    for (std::uint32_t i = 0; i < data->objectCount; ++i) {
+        text += std::string(", of ") + textOf(data->objects[i].objectName);
+    }
     static_cast<std::vector<std::string>*>(heard)->push_back(text);
     return XR_FALSE;
 }
@@ -30,7 +37,12 @@ struct Heard {
     std::vector<std::string> messages;
 
     XrDebugUtilsMessengerCreateInfoEXT info() {
-        return {XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr, kError | kInfo, kValidation | kGeneral, hear, &messages};
+        return {XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+                nullptr,
+                kError | kInfo,
+                kValidation | kGeneral,
+                hear,
+                &messages};
     }
     // The only message since the last call.
     std::string take() {
@@ -44,8 +56,9 @@ struct MessageFixture : HeadlessSession {
     XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
     PFN_xrSubmitDebugUtilsMessageEXT submit = XR(xrSubmitDebugUtilsMessageEXT);
     PFN_xrSetDebugUtilsObjectNameEXT setName = XR(xrSetDebugUtilsObjectNameEXT);
-    XrDebugUtilsObjectNameInfoEXT object{XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, XR_OBJECT_TYPE_SESSION,
-                                         reinterpret_cast<std::uint64_t>(session), "the session"};
+    XrDebugUtilsObjectNameInfoEXT object{XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr,
+                                         XR_OBJECT_TYPE_SESSION, reinterpret_cast<std::uint64_t>(session),
+                                         "the session"};
 
     MessageFixture() : HeadlessSession(k1_0, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME}) {
         const XrDebugUtilsMessengerCreateInfoEXT info = heard.info();
@@ -66,7 +79,9 @@ struct MessageFixture : HeadlessSession {
 
 XrDebugUtilsLabelEXT label(const char* name) { return {XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name}; }
 
-TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's own function, with what was wrong, to which it asked for") {
+TEST_CASE_FIXTURE(
+    MessageFixture,
+    "a refused call is told to the application's own function, with what was wrong, to which it asked for") {
     beMistaken();
     CHECK(heard.take() == kMistake);
     // The loader's own queries are not mistakes.
@@ -79,12 +94,14 @@ TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's o
 
     XrDebugUtilsMessengerCreateInfoEXT info = heard.info();
     const auto make = [&] { return create(&info); };
-    checkChanges(make, XR_SUCCESS, to(info.messageSeverities, XR_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT),
+    checkChanges(make, XR_SUCCESS,
+                 to(info.messageSeverities, XR_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT),
                  to(info.messageTypes, XR_DEBUG_UTILS_MESSAGE_TYPE_CONFORMANCE_BIT_EXT));
     beMistaken();
     CHECK(heard.messages.empty());
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.messageSeverities, 0), to(info.messageSeverities, 2), to(info.messageTypes, 0),
-                 to(info.messageTypes, 1 << 9), to(info.userCallback, nullptr));
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.messageSeverities, 0),
+                 to(info.messageSeverities, 2), to(info.messageTypes, 0), to(info.messageTypes, 1 << 9),
+                 to(info.userCallback, nullptr));
     checkArguments(XR(xrCreateDebugUtilsMessengerEXT), instance, &info, &messenger);
 }
 
@@ -92,11 +109,14 @@ TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refuse
     const std::string trigger = "/user/hand/left/input/trigger/", profiles = "/interaction_profiles/";
     for (const auto& [profile, binding, expected] :
          {std::tuple("khr/simple_controller", "value",
-                     "khr/simple_controller has no /user/hand/left/input/trigger/value, suggested for the action action"),
-          std::tuple("oculus/touch_controller", "proximity",
-                     "oculus/touch_controller has no /user/hand/left/input/trigger/proximity without XR_VERSION_1_1, suggested for the "
+                     "khr/simple_controller has no /user/hand/left/input/trigger/value, suggested for the "
                      "action action"),
-          std::tuple("meta/touch_plus_controller", "value", "meta/touch_plus_controller needs XR_VERSION_1_1"),
+          std::tuple("oculus/touch_controller", "proximity",
+                     "oculus/touch_controller has no /user/hand/left/input/trigger/proximity without "
+                     "XR_VERSION_1_1, suggested for the "
+                     "action action"),
+          std::tuple("meta/touch_plus_controller", "value",
+                     "meta/touch_plus_controller needs XR_VERSION_1_1"),
           std::tuple("nobody/nothing", "value", "nobody/nothing is not an interaction profile")}) {
         CHECK(suggest(profiles + profile, trigger + binding) == XR_ERROR_PATH_UNSUPPORTED);
         CHECK(takeReason() == profiles + expected);
@@ -108,10 +128,12 @@ TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refuse
     CHECK(XR(xrPathToString)(instance, 4711, 4, &count, text) == XR_ERROR_PATH_INVALID);
     CHECK(takeReason() == "the number 4711 is not a path");
     XrSpace space = XR_NULL_HANDLE;
-    XrReferenceSpaceCreateInfo info{XR_TYPE_ACTION_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL, {{0, 0, 0, 2}, {0, 0, 0}}};
+    XrReferenceSpaceCreateInfo info{
+        XR_TYPE_ACTION_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL, {{0, 0, 0, 2}, {0, 0, 0}}};
     const auto make = XR(xrCreateReferenceSpace);
     CHECK(make(session, &info, &space) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(takeReason() == "a structure is of type XR_TYPE_ACTION_CREATE_INFO, must be XR_TYPE_REFERENCE_SPACE_CREATE_INFO");
+    CHECK(takeReason() ==
+          "a structure is of type XR_TYPE_ACTION_CREATE_INFO, must be XR_TYPE_REFERENCE_SPACE_CREATE_INFO");
     info.type = XR_TYPE_REFERENCE_SPACE_CREATE_INFO;
     CHECK(make(session, &info, &space) == XR_ERROR_POSE_INVALID);
     CHECK(takeReason() == "the quaternion 0 0 0 2 is not of length 1");
@@ -119,18 +141,31 @@ TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refuse
     CHECK(takeReason() == "0x1234 is not an XrSession that exists");
 }
 
-TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, with the session's labels and the objects' names") {
+TEST_CASE_FIXTURE(
+    MessageFixture,
+    "applications submit messages of their own, with the session's labels and the objects' names") {
     const auto begin_region = XR(xrSessionBeginDebugUtilsLabelRegionEXT);
     const auto end_region = XR(xrSessionEndDebugUtilsLabelRegionEXT);
     const auto insert = XR(xrSessionInsertDebugUtilsLabelEXT);
-    const auto frame = label("frame"), eye = label("left eye"), here = label("here"), nameless = label(nullptr);
-    checkEach(XR_SUCCESS, {begin_region(session, &frame), begin_region(session, &eye), insert(session, &here), setName(instance, &object)});
+    const auto frame = label("frame"), eye = label("left eye"), here = label("here"),
+               nameless = label(nullptr);
+    checkEach(XR_SUCCESS, {begin_region(session, &frame), begin_region(session, &eye), insert(session, &here),
+                           setName(instance, &object)});
     object.objectName = nullptr;
-    XrDebugUtilsMessengerCallbackDataEXT data{
-        XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT, nullptr, nullptr, "main", "hello", 1, &object, 0, nullptr};
+    XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
+                                              nullptr,
+                                              nullptr,
+                                              "main",
+                                              "hello",
+                                              1,
+                                              &object,
+                                              0,
+                                              nullptr};
     CHECK(submit(instance, kInfo, kGeneral, &data) == XR_SUCCESS);
-    CHECK(heard.take() == "info general: none in main: hello, in here, in left eye, in frame, of the session");
-    checkEach(XR_SUCCESS, {setName(instance, &object), end_region(session), submit(instance, kInfo, kGeneral, &data)});
+    CHECK(heard.take() ==
+          "info general: none in main: hello, in here, in left eye, in frame, of the session");
+    checkEach(XR_SUCCESS,
+              {setName(instance, &object), end_region(session), submit(instance, kInfo, kGeneral, &data)});
     CHECK(heard.take() == "info general: none in main: hello, in frame, of none");
     CHECK(submit(instance, XR_DEBUG_UTILS_MESSAGE_SEVERITY_VERBOSE_BIT_EXT, kGeneral, &data) == XR_SUCCESS);
     CHECK(heard.messages.empty());
@@ -140,22 +175,34 @@ TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, wi
     CHECK(submit(instance, kInfo, kGeneral, &data) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(submit(XR_NULL_HANDLE, kInfo, kGeneral, &data) == XR_ERROR_HANDLE_INVALID);
     object.objectHandle = 0;
-    checkEach(XR_ERROR_VALIDATION_FAILURE, {setName(instance, &object), begin_region(session, nullptr), insert(session, &nameless)});
+    checkEach(XR_ERROR_VALIDATION_FAILURE,
+              {setName(instance, &object), begin_region(session, nullptr), insert(session, &nameless)});
     checkEach(XR_ERROR_HANDLE_INVALID, {begin_region(XR_NULL_HANDLE, &frame), end_region(XR_NULL_HANDLE)});
 }
 
-TEST_CASE_FIXTURE(MessageFixture, "what an application's message says is passed on, but objects go by the names they were given for good") {
+TEST_CASE_FIXTURE(
+    MessageFixture,
+    "what an application's message says is passed on, but objects go by the names they were given for good") {
     const auto region = label("the session's own");
-    checkEach(XR_SUCCESS, {XR(xrSessionBeginDebugUtilsLabelRegionEXT)(session, &region), setName(instance, &object)});
+    checkEach(XR_SUCCESS,
+              {XR(xrSessionBeginDebugUtilsLabelRegionEXT)(session, &region), setName(instance, &object)});
     XrDebugUtilsLabelEXT labels[]{label("inner"), label("outer")};
     XrDebugUtilsObjectNameInfoEXT objects[3] = {object, object, object};
     objects[0].objectName = "passed";
     objects[1].objectName = nullptr;
     objects[2].objectHandle = 77;
     objects[2].objectName = "never registered";
-    XrDebugUtilsMessengerCallbackDataEXT data{
-        XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT, nullptr, nullptr, nullptr, "hello", 3, objects, 2, labels};
-    const std::string rest = ": hello, in inner, in outer, of the session, of the session, of never registered";
+    XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
+                                              nullptr,
+                                              nullptr,
+                                              nullptr,
+                                              "hello",
+                                              3,
+                                              objects,
+                                              2,
+                                              labels};
+    const std::string rest =
+        ": hello, in inner, in outer, of the session, of the session, of never registered";
     const auto send = [&] { return submit(instance, kInfo, kGeneral, &data); };
     CHECK(send() == XR_SUCCESS);
     CHECK(heard.take() == "info general: none in none" + rest);
@@ -163,21 +210,26 @@ TEST_CASE_FIXTURE(MessageFixture, "what an application's message says is passed 
     data.functionName = "";
     CHECK(send() == XR_SUCCESS);
     CHECK(heard.take() == "info general: an id in " + rest);
-    checkChanges(send, XR_ERROR_VALIDATION_FAILURE, to(labels[1].labelName, nullptr), to(data.sessionLabels, nullptr));
+    checkChanges(send, XR_ERROR_VALIDATION_FAILURE, to(labels[1].labelName, nullptr),
+                 to(data.sessionLabels, nullptr));
 }
 
-TEST_CASE("a messenger in the chain hears why the instance itself was refused; messages come through the loader, too") {
+TEST_CASE(
+    "a messenger in the chain hears why the instance itself was refused; messages come through the loader, "
+    "too") {
     Heard heard;
     const XrDebugUtilsMessengerCreateInfoEXT messenger_info = heard.info();
     {
         const Headset headset(kQuietScript);
         const Direct runtime;
-        const Extensions foreign{XR_EXT_DEBUG_UTILS_EXTENSION_NAME, "XR_KHR_opengl_enable"}, unknown{"XR_KHR_nothing"};
+        const Extensions foreign{XR_EXT_DEBUG_UTILS_EXTENSION_NAME, "XR_KHR_opengl_enable"},
+            unknown{"XR_KHR_nothing"};
         XrInstanceCreateInfo info = instanceInfo(foreign);
         info.next = &messenger_info;
         CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
         CHECK(heard.take() ==
-              "error validation: XR_ERROR_EXTENSION_NOT_PRESENT in xrCreateInstance: XR_KHR_opengl_enable: this runtime has Vulkan alone, "
+              "error validation: XR_ERROR_EXTENSION_NOT_PRESENT in xrCreateInstance: XR_KHR_opengl_enable: "
+              "this runtime has Vulkan alone, "
               "XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
         // Without the extension, there is nobody to receive messages.
         info = instanceInfo(unknown);
@@ -187,7 +239,8 @@ TEST_CASE("a messenger in the chain hears why the instance itself was refused; m
     }
     const InstanceFixture made(kQuietScript, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME});
     XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
-    REQUIRE(made.XR(xrCreateDebugUtilsMessengerEXT)(made.instance, &messenger_info, &messenger) == XR_SUCCESS);
+    REQUIRE(made.XR(xrCreateDebugUtilsMessengerEXT)(made.instance, &messenger_info, &messenger) ==
+            XR_SUCCESS);
     XrPath path = XR_NULL_PATH;
     CHECK(xrStringToPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
     CHECK(heard.take() == kMistake);

@@ -41,7 +41,9 @@ std::vector<Bound> bindingsOf(const Profile& profile, std::string_view user_path
         if (simulated::findComponent(profile, user_path, component.path, enabled) != &component) { continue; }
         const std::string path = std::string(user_path).append(component.path);
         bindings.push_back({path, typeOf(component.kind)});
-        if (path.ends_with("/x")) { bindings.push_back({path.substr(0, path.size() - 2), XR_ACTION_TYPE_VECTOR2F_INPUT}); }
+        if (path.ends_with("/x")) {
+            bindings.push_back({path.substr(0, path.size() - 2), XR_ACTION_TYPE_VECTOR2F_INPUT});
+        }
     }
     return bindings;
 }
@@ -64,7 +66,8 @@ struct Played : HeadlessSession {
           bindings(bindingsOf(profile, user)) {
         std::vector<XrActionSuggestedBinding> suggested;
         for (Bound& bound : bindings) {
-            bound.action = makeAction(set, "action_" + std::to_string(suggested.size()), bound.type, {user_path});
+            bound.action =
+                makeAction(set, "action_" + std::to_string(suggested.size()), bound.type, {user_path});
             suggested.push_back({bound.action, path(bound.path)});
         }
         REQUIRE(suggest(std::string(profile.path), suggested) == XR_SUCCESS);
@@ -84,7 +87,8 @@ struct Played : HeadlessSession {
         } else if (bound.type == XR_ACTION_TYPE_FLOAT_INPUT) {
             REQUIRE(XR(xrSetInputDeviceStateFloatEXT)(session, user_path, source, value) == XR_SUCCESS);
         } else if (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT) {
-            REQUIRE(XR(xrSetInputDeviceStateVector2fEXT)(session, user_path, source, {value, -value}) == XR_SUCCESS);
+            REQUIRE(XR(xrSetInputDeviceStateVector2fEXT)(session, user_path, source, {value, -value}) ==
+                    XR_SUCCESS);
         }
         synchronize();
     }
@@ -118,7 +122,8 @@ struct Played : HeadlessSession {
         constexpr float kHalf = 0.70710678f;
         const XrSpace stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
         const XrPosef wanted{{0, kHalf, 0, kHalf}, {1, 2, 3}};
-        REQUIRE(XR(xrSetInputDeviceLocationEXT)(session, user_path, path(bound.path), stage, wanted) == XR_SUCCESS);
+        REQUIRE(XR(xrSetInputDeviceLocationEXT)(session, user_path, path(bound.path), stage, wanted) ==
+                XR_SUCCESS);
         synchronize();
         const XrSpaceLocation location = locate(makeActionSpace(bound.action, user_path), stage, kStart);
         CHECK((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
@@ -137,7 +142,8 @@ struct Binding {
         const auto has = [&](const char* part) { return path.find(part) != std::string::npos; };
         if (has("haptic_")) { return XR_ACTION_TYPE_VIBRATION_OUTPUT; }
         if (has("pinch_ext/value")) { return XR_ACTION_TYPE_FLOAT_INPUT; }
-        return has("/pose") || has("gaze_ext") || has("grip_surface") ? XR_ACTION_TYPE_POSE_INPUT : XR_ACTION_TYPE_BOOLEAN_INPUT;
+        return has("/pose") || has("gaze_ext") || has("grip_surface") ? XR_ACTION_TYPE_POSE_INPUT
+                                                                      : XR_ACTION_TYPE_BOOLEAN_INPUT;
     }
 };
 
@@ -149,7 +155,8 @@ std::vector<Binding> bindingsIn(const char* lines) {
     for (std::string line; std::getline(stream, line);) {
         const std::vector<std::string> words = wordsIn(line);
         for (std::size_t i = 3; i < words.size(); ++i) {
-            bindings.push_back({words[2], words[i], words[1] == "-" ? "" : words[1], words[0] == "1.0", words[0] != "none"});
+            bindings.push_back(
+                {words[2], words[i], words[1] == "-" ? "" : words[1], words[0] == "1.0", words[0] != "none"});
         }
     }
     return bindings;
@@ -202,7 +209,9 @@ none XR_EXT_hand_interaction khr/simple_controller hand/left/input/pinch_ext/pos
 none XR_EXT_hand_interaction ext/hand_interaction_ext hand/left/input/pinch_ext/value
 none XR_EXT_eye_gaze_interaction ext/eye_gaze_interaction eyes_ext/input/gaze_ext/pose eyes_ext/input/gaze_ext)";
 
-TEST_CASE("every input of every profile is read as it is moved, each by itself, every pose where it is put, while its device is there") {
+TEST_CASE(
+    "every input of every profile is read as it is moved, each by itself, every pose where it is put, while "
+    "its device is there") {
     for (const Profile& profile : simulated::listProfiles()) {
         for (const std::string_view user : profile.user_paths) {
             INFO(std::string(profile.path), " ", std::string(user));
@@ -212,7 +221,8 @@ TEST_CASE("every input of every profile is read as it is moved, each by itself, 
                 if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
                 const Played::Reading off = played.read(bound);
                 CHECK_MESSAGE(!off.is_active, bound.path);
-                CHECK_MESSAGE((off.x == 0 && off.y == 0 && off.changed_at == 0 && !off.has_changed), bound.path);
+                CHECK_MESSAGE((off.x == 0 && off.y == 0 && off.changed_at == 0 && !off.has_changed),
+                              bound.path);
             }
             played.switchTo(true);
             for (const Bound& bound : played.bindings) {
@@ -226,7 +236,8 @@ TEST_CASE("every input of every profile is read as it is moved, each by itself, 
                 const float value = bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? 1.0f : 0.75f;
                 played.move(bound, value);
                 const Played::Reading moved = played.read(bound);
-                CHECK(these(moved.x, moved.y) == these(value, (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f)));
+                CHECK(these(moved.x, moved.y) ==
+                      these(value, (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f)));
                 CHECK((moved.has_changed && moved.changed_at > 0));
                 // Nothing else of its type moves with it.
                 for (const Bound& other : played.bindings) {
@@ -252,9 +263,11 @@ TEST_CASE("each profile takes its own paths and no others, in its version, or wi
     const auto check = [&](XrVersion version, const Extensions& extensions, const auto& isTaken) {
         const DirectInstance made(version, extensions);
         for (const Binding& one : bindings) {
-            INFO(one.profile, " ", one.path, " ", version == k1_1 ? "1.1 " : "1.0 ", extensions.empty() ? "" : extensions[0]);
+            INFO(one.profile, " ", one.path, " ", version == k1_1 ? "1.1 " : "1.0 ",
+                 extensions.empty() ? "" : extensions[0]);
             const XrResult expected = isTaken(one) ? XR_SUCCESS : XR_ERROR_PATH_UNSUPPORTED;
-            CHECK(made.suggest("/interaction_profiles/" + one.profile, "/user/" + one.path, one.type()) == expected);
+            CHECK(made.suggest("/interaction_profiles/" + one.profile, "/user/" + one.path, one.type()) ==
+                  expected);
         }
     };
     check(k1_0, {}, [](const Binding& one) { return one.of_1_0; });
@@ -264,12 +277,15 @@ TEST_CASE("each profile takes its own paths and no others, in its version, or wi
         if (!one.extension.empty()) { extensions.insert(one.extension); }
     }
     for (const std::string& extension : extensions) {
-        check(k1_0, {extension.c_str()}, [&](const Binding& one) { return one.of_1_0 || one.extension == extension; });
+        check(k1_0, {extension.c_str()},
+              [&](const Binding& one) { return one.of_1_0 || one.extension == extension; });
     }
     for (const auto& [extension, profile, path] :
          {std::tuple(kHands, kSimple, "/user/hand/left/input/pinch_ext/value"),
-          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction", "/user/eyes_ext/input/aim/pose"),
-          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction", "/user/hand/left/input/gaze_ext/pose"),
+          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction",
+                     "/user/eyes_ext/input/aim/pose"),
+          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction",
+                     "/user/hand/left/input/gaze_ext/pose"),
           std::tuple(kEyes, kSimple, "/user/eyes_ext/input/gaze_ext/pose")}) {
         CHECK(DirectInstance(k1_1, {extension}).suggest(profile, path) == XR_ERROR_PATH_UNSUPPORTED);
     }
@@ -284,25 +300,32 @@ TEST_CASE("the palm's surface lies beside the grip, turned towards the index fin
     std::vector<XrActionSuggestedBinding> bindings;
     for (const std::string name : {"grip", "grip_surface"}) {
         actions.push_back(made.makeAction(set, name, XR_ACTION_TYPE_POSE_INPUT, paths));
-        for (const std::string& hand : hands) { bindings.push_back({actions.back(), made.path(hand + "/input/" + name + "/pose")}); }
+        for (const std::string& hand : hands) {
+            bindings.push_back({actions.back(), made.path(hand + "/input/" + name + "/pose")});
+        }
     }
     REQUIRE(made.suggest(kSimple, bindings) == XR_SUCCESS);
     made.attach({set});
     made.begin();
     REQUIRE(made.sync(set) == XR_SUCCESS);
     for (const XrPath hand : paths) {
-        const XrSpaceLocation location =
-            made.locate(made.makeActionSpace(actions[1], hand), made.makeActionSpace(actions[0], hand), kStart);
+        const XrSpaceLocation location = made.locate(made.makeActionSpace(actions[1], hand),
+                                                     made.makeActionSpace(actions[0], hand), kStart);
         CHECK(these(location.locationFlags, location.pose.position.x, location.pose.orientation.x) ==
-              these(15, doctest::Approx(hand == paths[0] ? -0.02 : 0.02), doctest::Approx(-std::sin(3.14159265 / 8))));
+              these(15, doctest::Approx(hand == paths[0] ? -0.02 : 0.02),
+                    doctest::Approx(-std::sin(3.14159265 / 8))));
         CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
     }
 }
 
 TEST_CASE("what a path depends on is read as the registry writes it: + is and, a comma is or") {
     const simulated::Enabled older{false, {"A", "B"}};
-    for (const char* met : {"", "A", "A+B", "C,B", "C+A,B", "B,C+A"}) { CHECK_MESSAGE(older.meets(met), met); }
-    for (const char* not_met : {"C", "A+C", "A+C,XR_VERSION_1_1"}) { CHECK_FALSE_MESSAGE(older.meets(not_met), not_met); }
+    for (const char* met : {"", "A", "A+B", "C,B", "C+A,B", "B,C+A"}) {
+        CHECK_MESSAGE(older.meets(met), met);
+    }
+    for (const char* not_met : {"C", "A+C", "A+C,XR_VERSION_1_1"}) {
+        CHECK_FALSE_MESSAGE(older.meets(not_met), not_met);
+    }
     CHECK(simulated::Enabled{true, {}}.meets("A+C,XR_VERSION_1_1"));
 }
 

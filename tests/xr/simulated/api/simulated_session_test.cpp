@@ -8,11 +8,16 @@ using Json = nlohmann::json;
 
 const std::string kSmall = "size 64 64\nframes none\n";
 constexpr XrDuration kPeriod = 10'000'000;  // 100 frames per second
-const States kWholeLife{XR_SESSION_STATE_IDLE,    XR_SESSION_STATE_READY,   XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE,
-                        XR_SESSION_STATE_FOCUSED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING};
+const States kWholeLife{XR_SESSION_STATE_IDLE,         XR_SESSION_STATE_READY,
+                        XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE,
+                        XR_SESSION_STATE_FOCUSED,      XR_SESSION_STATE_VISIBLE,
+                        XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING};
 
 struct Begun : SessionFixture {
-    explicit Begun(const std::string& script, const Extensions& extensions = {}) : SessionFixture(kSmall + script, extensions) { begin(); }
+    explicit Begun(const std::string& script, const Extensions& extensions = {})
+        : SessionFixture(kSmall + script, extensions) {
+        begin();
+    }
 
     std::vector<XrFrameState> frames(int count) const {
         std::vector<XrFrameState> states;
@@ -52,7 +57,8 @@ XrResult failureOf(const SessionFixture& made) {
     return result;
 }
 
-TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a system; its objects and events end with it") {
+TEST_CASE_FIXTURE(VulkanFixture,
+                  "a session wants a graphics binding and a system; its objects and events end with it") {
     XrGraphicsBindingVulkan2KHR graphics = binding(), second = graphics;
     XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
     const auto make = [&] { return xrCreateSession(instance, &info, &session); };
@@ -70,22 +76,26 @@ TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a syste
     REQUIRE(xrCreateSwapchain(session, &swapchain_info, &swapchain) == XR_SUCCESS);
     const XrSpace space = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL);
     // A handle of one type is not accepted as another.
-    checkEach(XR_ERROR_HANDLE_INVALID,
-              {xrDestroySession(reinterpret_cast<XrSession>(space)), xrDestroySpace(reinterpret_cast<XrSpace>(session)),
-               xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)), xrDestroySession(XR_NULL_HANDLE)});
+    checkEach(XR_ERROR_HANDLE_INVALID, {xrDestroySession(reinterpret_cast<XrSession>(space)),
+                                        xrDestroySpace(reinterpret_cast<XrSpace>(session)),
+                                        xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)),
+                                        xrDestroySession(XR_NULL_HANDLE)});
 
     CHECK(xrDestroySession(session) == XR_SUCCESS);
-    checkEach(XR_ERROR_HANDLE_INVALID,
-              {xrDestroySession(session), xrDestroySpace(space), xrDestroySwapchain(swapchain), xrRequestExitSession(session)});
+    checkEach(XR_ERROR_HANDLE_INVALID, {xrDestroySession(session), xrDestroySpace(space),
+                                        xrDestroySwapchain(swapchain), xrRequestExitSession(session)});
     CHECK(states().empty());
     checkEach(XR_SUCCESS, {make(), xrDestroySession(session), make()});
     CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in stereo, and goes from IDLE to FOCUSED, a state per frame") {
+TEST_CASE_FIXTURE(
+    SessionFixture,
+    "a session begins once, when it is READY, in stereo, and goes from IDLE to FOCUSED, a state per frame") {
     XrFrameState state{XR_TYPE_FRAME_STATE};
-    checkEach(XR_ERROR_SESSION_NOT_RUNNING, {xrWaitFrame(session, nullptr, &state), xrBeginFrame(session, nullptr), endFrame(1),
-                                             xrEndSession(session), xrRequestExitSession(session)});
+    checkEach(XR_ERROR_SESSION_NOT_RUNNING,
+              {xrWaitFrame(session, nullptr, &state), xrBeginFrame(session, nullptr), endFrame(1),
+               xrEndSession(session), xrRequestExitSession(session)});
 
     XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kStereo};
     const auto begin = [&] { return xrBeginSession(session, &info); };
@@ -98,10 +108,12 @@ TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in s
 
     // Frames are to be drawn from VISIBLE on; in lock-step, a frame lasts one period.
     state = frame();
-    CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) == these(XR_FALSE, 11'111'111, kStart));
+    CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) ==
+          these(XR_FALSE, 11'111'111, kStart));
     CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
     state = frame();
-    CHECK(these(state.shouldRender, state.predictedDisplayTime) == these(XR_FALSE, kStart + state.predictedDisplayPeriod));
+    CHECK(these(state.shouldRender, state.predictedDisplayTime) ==
+          these(XR_FALSE, kStart + state.predictedDisplayPeriod));
     CHECK(states() == States{XR_SESSION_STATE_VISIBLE});
     CHECK(frame().shouldRender == XR_TRUE);
     CHECK(states() == States{XR_SESSION_STATE_FOCUSED});
@@ -111,17 +123,20 @@ TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in s
     CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_STOPPING);
     CHECK(xrRequestExitSession(session) == XR_SUCCESS);
     for (int i = 0; i < 3; ++i) { frame(); }
-    CHECK(states() == States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
+    CHECK(states() ==
+          States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
     CHECK(xrEndSession(session) == XR_SUCCESS);
     CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
     CHECK(begin() == XR_ERROR_SESSION_NOT_READY);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended in this order, in structures of their types") {
+TEST_CASE_FIXTURE(SessionFixture,
+                  "frames are waited for, begun and ended in this order, in structures of their types") {
     begin();
     checkEach(XR_ERROR_CALL_ORDER_INVALID, {xrBeginFrame(session, nullptr), endFrame(1)});
     XrFrameState state{XR_TYPE_FRAME_END_INFO};
-    checkEach(XR_ERROR_VALIDATION_FAILURE, {xrWaitFrame(session, nullptr, &state), xrWaitFrame(session, nullptr, nullptr)});
+    checkEach(XR_ERROR_VALIDATION_FAILURE,
+              {xrWaitFrame(session, nullptr, &state), xrWaitFrame(session, nullptr, nullptr)});
     const XrFrameWaitInfo wait{XR_TYPE_FRAME_BEGIN_INFO};
     state.type = XR_TYPE_FRAME_STATE;
     CHECK(xrWaitFrame(session, &wait, &state) == XR_ERROR_VALIDATION_FAILURE);
@@ -133,11 +148,14 @@ TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended in thi
     const XrTime second = waitFrame().predictedDisplayTime;
     CHECK(xrBeginFrame(session, nullptr) == XR_FRAME_DISCARDED);
 
-    XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO, nullptr, second, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 0, nullptr};
+    XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,           nullptr, second,
+                        XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 0,       nullptr};
     const auto end = [&] { return xrEndFrame(session, &info); };
     checkArguments(xrEndFrame, session, &info);
-    CHECK(with(info.environmentBlendMode, XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, end) == XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
-    CHECK(with(info.environmentBlendMode, static_cast<XrEnvironmentBlendMode>(0), end) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(with(info.environmentBlendMode, XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, end) ==
+          XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
+    CHECK(with(info.environmentBlendMode, static_cast<XrEnvironmentBlendMode>(0), end) ==
+          XR_ERROR_VALIDATION_FAILURE);
     // A frame whose end was refused can be ended again.
     checkChanges(end, XR_ERROR_TIME_INVALID, to(info.displayTime, 0), to(info.displayTime, -5));
     CHECK(end() == XR_SUCCESS);
@@ -165,7 +183,8 @@ TEST_CASE_FIXTURE(SessionFixture, "xrWaitFrame waits until the frame before has 
 
 TEST_CASE("the script hides the session, takes its focus, and lets frames go undrawn") {
     const SessionFixture made(kSmall +
-                              "rate 10\nat 1 focused off\nat 2 visible off\nat 3 visible on\nat 3.5 focused on\nat 4 should-render off\n");
+                              "rate 10\nat 1 focused off\nat 2 visible off\nat 3 visible on\nat 3.5 focused "
+                              "on\nat 4 should-render off\n");
     made.focus();  // three frames of 0.1 s
     int shown = 2;
     const auto runTo = [&](int frame) {
@@ -197,7 +216,8 @@ TEST_CASE("a session that is being lost says so with every success, and then fai
     CHECK(xrBeginFrame(session, nullptr) == XR_SESSION_LOSS_PENDING);
     CHECK(made.endFrame(state.predictedDisplayTime) == XR_SESSION_LOSS_PENDING);
     checkEach(XR_ERROR_SESSION_LOST,
-              {failureOf(made), xrEnumerateReferenceSpaces(session, 0, &count, nullptr), xrRequestExitSession(session)});
+              {failureOf(made), xrEnumerateReferenceSpaces(session, 0, &count, nullptr),
+               xrRequestExitSession(session)});
     CHECK(xrDestroySession(session) == XR_SUCCESS);
     // Time has moved on, so the script's line is in the history.
     made.makeSession();
@@ -215,13 +235,16 @@ TEST_CASE("an instance that is lost says when, and then fails") {
     CHECK(XR_SUCCEEDED(xrBeginFrame(made.session, nullptr)));
     CHECK(failureOf(made) == XR_ERROR_INSTANCE_LOST);
     XrPath path = XR_NULL_PATH;
-    checkEach(XR_ERROR_INSTANCE_LOST, {xrStringToPath(made.instance, "/a", &path), xrPollEvent(made.instance, &event)});
+    checkEach(XR_ERROR_INSTANCE_LOST,
+              {xrStringToPath(made.instance, "/a", &path), xrPollEvent(made.instance, &event)});
 }
 
 TEST_CASE("events that nobody polls are lost and counted") {
     // Loses and regains focus in every second frame, from the third on.
     std::string script = "rate 10\n";
-    for (int i = 0; i < 110; ++i) { script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n"); }
+    for (int i = 0; i < 110; ++i) {
+        script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n");
+    }
     const Begun made(script);
     made.frames(100);
     XrEventDataBuffer event;
@@ -235,7 +258,9 @@ TEST_CASE("events that nobody polls are lost and counted") {
     CHECK(made.poll(event) == XR_TYPE_UNKNOWN);
 }
 
-TEST_CASE("frames go by the display's rate from the next one on: that which the program requests, or the script, which tells of it") {
+TEST_CASE(
+    "frames go by the display's rate from the next one on: that which the program requests, or the script, "
+    "which tells of it") {
     const Begun made("rate 100\nat 0.1 rate 50", {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME});
     const auto request = made.XR(xrRequestDisplayRefreshRateFB);
     XrFrameState state = made.frame();
@@ -253,8 +278,10 @@ TEST_CASE("frames go by the display's rate from the next one on: that which the 
     // From 0.0325 s on.
     std::vector<XrDuration> steps;
     for (int i = 0; i < 12; ++i) { steps.push_back(step()); }
-    CHECK(these(std::ranges::find(steps, 2 * kPeriod) - steps.begin(), std::ranges::count(steps, 2 * kPeriod)) == these(7, 5));
-    const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
+    CHECK(these(std::ranges::find(steps, 2 * kPeriod) - steps.begin(),
+                std::ranges::count(steps, 2 * kPeriod)) == these(7, 5));
+    const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(
+        XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
     REQUIRE(changes.size() == 1);
     CHECK(these(changes[0].fromDisplayRefreshRate, changes[0].toDisplayRefreshRate) == these(100.0f, 50.0f));
     float rates[16] = {};
@@ -263,7 +290,9 @@ TEST_CASE("frames go by the display's rate from the next one on: that which the 
     CHECK(std::count(rates, rates + count, 50.0f) == 1);
 }
 
-TEST_CASE("irregular periods differ, within what the script says, and do not drift; a stretched one is as many as the frame before took") {
+TEST_CASE(
+    "irregular periods differ, within what the script says, and do not drift; a stretched one is as many as "
+    "the frame before took") {
     std::set<XrDuration> steps, stated;
     XrTime before = kStart;
     for (const XrFrameState& state : Begun("rate 100\nirregular 50").frames(200)) {
@@ -277,7 +306,8 @@ TEST_CASE("irregular periods differ, within what the script says, and do not dri
     CHECK(std::abs(before - kStart - 199 * kPeriod) <= kPeriod / 4);
 
     before = kStart - kPeriod;
-    for (const XrFrameState& state : Begun("rate 100\nperiod stretched\nat 0.1 gpu-load 25 ms\nat 0.3 gpu-load 0 ms").frames(40)) {
+    for (const XrFrameState& state :
+         Begun("rate 100\nperiod stretched\nat 0.1 gpu-load 25 ms\nat 0.3 gpu-load 0 ms").frames(40)) {
         CHECK(state.predictedDisplayTime - before == state.predictedDisplayPeriod);
         before = state.predictedDisplayTime;
         stated.insert(state.predictedDisplayPeriod);
@@ -293,7 +323,9 @@ TEST_CASE("a device that takes longer than a period misses displays, and the log
         for (std::size_t i = 1; i < frames.size(); ++i) {
             const XrTime time = frames[i - 1].predictedDisplayTime;
             const double time_s = 1e-9 * static_cast<double>(time - kStart);
-            if (time_s >= from_s && time_s < to_s) { steps.insert((frames[i].predictedDisplayTime - time) / kPeriod); }
+            if (time_s >= from_s && time_s < to_s) {
+                steps.insert((frames[i].predictedDisplayTime - time) / kPeriod);
+            }
         }
         return steps;
     };
@@ -304,7 +336,9 @@ TEST_CASE("a device that takes longer than a period misses displays, and the log
     CHECK(said == std::set<double>{0.0, 7.0, 25.0});
 }
 
-TEST_CASE_FIXTURE(Leaving, "the script goes on and the session moves though every frame is refused, and the log has each with its reason") {
+TEST_CASE_FIXTURE(Leaving,
+                  "the script goes on and the session moves though every frame is refused, and the log has "
+                  "each with its reason") {
     const auto refuse = [&](XrTime time) {
         for (int i = 0; i < 2; ++i) { CHECK(endFrame(-time) == XR_ERROR_TIME_INVALID); }
     };
@@ -317,16 +351,22 @@ TEST_CASE_FIXTURE(Leaving, "the script goes on and the session moves though ever
         CHECK_FALSE(line.contains("frame"));
         for (const auto& event : line["events"]) { events.push_back(event); }
         if (!line.contains("refused")) { continue; }
-        CHECK(these(line["refused"], line["display_time_ns"]) == these("XR_ERROR_TIME_INVALID", kStart + kPeriod * refused));
-        CHECK(line["reason"] == "the time is " + std::to_string(-line["display_time_ns"].get<XrTime>()) + ", must be positive");
+        CHECK(these(line["refused"], line["display_time_ns"]) ==
+              these("XR_ERROR_TIME_INVALID", kStart + kPeriod * refused));
+        CHECK(line["reason"] ==
+              "the time is " + std::to_string(-line["display_time_ns"].get<XrTime>()) + ", must be positive");
         ++refused;
     }
     CHECK(refused == 13);
-    CHECK(events == std::vector<std::string>{"state IDLE", "state READY", "state SYNCHRONIZED", "state VISIBLE", "state FOCUSED", "exit",
-                                             "state VISIBLE", "state SYNCHRONIZED", "state STOPPING", "state IDLE", "state EXITING"});
+    CHECK(events == std::vector<std::string>{"state IDLE", "state READY", "state SYNCHRONIZED",
+                                             "state VISIBLE", "state FOCUSED", "exit", "state VISIBLE",
+                                             "state SYNCHRONIZED", "state STOPPING", "state IDLE",
+                                             "state EXITING"});
 }
 
-TEST_CASE_FIXTURE(Leaving, "a frame that is refused and ended again moves the session once, and the log ends with its last states") {
+TEST_CASE_FIXTURE(
+    Leaving,
+    "a frame that is refused and ended again moves the session once, and the log ends with its last states") {
     for (int i = 0; i < 3; ++i) {
         const XrTime time = waitFrame().predictedDisplayTime;
         REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
@@ -340,8 +380,8 @@ TEST_CASE_FIXTURE(Leaving, "a frame that is refused and ended again moves the se
     while (states() != States{XR_SESSION_STATE_STOPPING}) { frame(); }
     CHECK(xrEndSession(session) == XR_SUCCESS);
     lines = logged();
-    CHECK(these(lines[lines.size() - 3].contains("frame"), lines[lines.size() - 2]["events"], lines[lines.size() - 2]["session_state"]) ==
-          these(true, Json{"state STOPPING"}, "STOPPING"));
+    CHECK(these(lines[lines.size() - 3].contains("frame"), lines[lines.size() - 2]["events"],
+                lines[lines.size() - 2]["session_state"]) == these(true, Json{"state STOPPING"}, "STOPPING"));
     CHECK(lines.back()["events"] == Json{"state IDLE", "state EXITING"});
 }
 
@@ -366,7 +406,8 @@ TEST_CASE("states change while a frame is open, where the script says so, and th
         take(closed);
     }
     REQUIRE_FALSE(open.empty());
-    CHECK(these(open.front(), open.back()) == these(XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING));
+    CHECK(these(open.front(), open.back()) ==
+          these(XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING));
     CHECK(std::ranges::count(closed, XR_SESSION_STATE_FOCUSED) == 0);
     CHECK(xrEndSession(made.session) == XR_SUCCESS);
 }

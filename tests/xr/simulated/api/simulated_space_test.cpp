@@ -23,7 +23,8 @@ struct Mask {
     std::vector<std::uint32_t> indices = std::vector<std::uint32_t>(kMost);
 
     Mask(const SessionFixture& made, std::uint32_t view, XrVisibilityMaskTypeKHR type) {
-        XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR, nullptr, kMost, 0, vertices.data(), kMost, 0, indices.data()};
+        XrVisibilityMaskKHR mask{
+            XR_TYPE_VISIBILITY_MASK_KHR, nullptr, kMost, 0, vertices.data(), kMost, 0, indices.data()};
         REQUIRE(made.XR(xrGetVisibilityMaskKHR)(made.session, kStereo, view, type, &mask) == XR_SUCCESS);
         vertices.resize(mask.vertexCountOutput);
         indices.resize(mask.indexCountOutput);
@@ -33,43 +34,58 @@ struct Mask {
     float right() const { return std::ranges::max(vertices, {}, &XrVector2f::x).x; }
 };
 
-TEST_CASE_FIXTURE(SessionFixture, "reference spaces are VIEW, LOCAL and STAGE, each at a pose; the stage alone has bounds") {
-    const auto types = checkList<XrReferenceSpaceType>([&](auto... step) { return xrEnumerateReferenceSpaces(session, step...); });
-    CHECK(types == std::vector{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE});
+TEST_CASE_FIXTURE(SessionFixture,
+                  "reference spaces are VIEW, LOCAL and STAGE, each at a pose; the stage alone has bounds") {
+    const auto types = checkList<XrReferenceSpaceType>(
+        [&](auto... step) { return xrEnumerateReferenceSpaces(session, step...); });
+    CHECK(types == std::vector{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL,
+                               XR_REFERENCE_SPACE_TYPE_STAGE});
     std::uint32_t count = 0;
     CHECK(xrEnumerateReferenceSpaces(XR_NULL_HANDLE, 0, &count, nullptr) == XR_ERROR_HANDLE_INVALID);
-    XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_STAGE, kIdentity};
+    XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr,
+                                    XR_REFERENCE_SPACE_TYPE_STAGE, kIdentity};
     XrSpace space = XR_NULL_HANDLE;
     const auto make = [&] { return xrCreateReferenceSpace(session, &info, &space); };
     checkEach(XR_SUCCESS, {make(), xrDestroySpace(space)});
     CHECK(xrDestroySpace(space) == XR_ERROR_HANDLE_INVALID);
     checkArguments(xrCreateReferenceSpace, session, &info, &space);
-    CHECK(with(info.referenceSpaceType, static_cast<XrReferenceSpaceType>(99), make) == XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
+    CHECK(with(info.referenceSpaceType, static_cast<XrReferenceSpaceType>(99), make) ==
+          XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
     checkChanges(make, XR_ERROR_POSE_INVALID, to(info.poseInReferenceSpace.orientation.w, 0),
-                 to(info.poseInReferenceSpace.orientation.w, 1.02f), to(info.poseInReferenceSpace.position.y, NAN));
+                 to(info.poseInReferenceSpace.orientation.w, 1.02f),
+                 to(info.poseInReferenceSpace.position.y, NAN));
 
     XrExtent2Df bounds{-1, -1};
     CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_STAGE, &bounds) == XR_SUCCESS);
     CHECK(bounds.width > 0);
-    CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_LOCAL, &bounds) == XR_SPACE_BOUNDS_UNAVAILABLE);
+    CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_LOCAL, &bounds) ==
+          XR_SPACE_BOUNDS_UNAVAILABLE);
     CHECK(bounds.width == 0);
-    CHECK(xrGetReferenceSpaceBoundsRect(session, static_cast<XrReferenceSpaceType>(99), &bounds) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_STAGE, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(xrGetReferenceSpaceBoundsRect(session, static_cast<XrReferenceSpaceType>(99), &bounds) ==
+          XR_ERROR_VALIDATION_FAILURE);
+    CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_STAGE, nullptr) ==
+          XR_ERROR_VALIDATION_FAILURE);
 
     // Locating needs two spaces, a time and a place for the answer.
     XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
-    checkEach(XR_ERROR_TIME_INVALID, {xrLocateSpace(local, local, 0, &location), xrLocateSpace(local, local, -1, &location)});
-    checkArguments([&](XrSpace of, auto* place) { return xrLocateSpace(of, local, 1, place); }, local, &location);
-    checkArguments([&](XrSpace base, auto* place) { return xrLocateSpace(local, base, 1, place); }, local, &location);
+    checkEach(XR_ERROR_TIME_INVALID,
+              {xrLocateSpace(local, local, 0, &location), xrLocateSpace(local, local, -1, &location)});
+    checkArguments([&](XrSpace of, auto* place) { return xrLocateSpace(of, local, 1, place); }, local,
+                   &location);
+    checkArguments([&](XrSpace base, auto* place) { return xrLocateSpace(local, base, 1, place); }, local,
+                   &location);
 
     // A headset without a mask gives an empty one.
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
-    CHECK(XR(xrGetVisibilityMaskKHR)(session, kStereo, 1, XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR, &mask) == XR_SUCCESS);
+    CHECK(XR(xrGetVisibilityMaskKHR)(session, kStereo, 1, XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR, &mask) ==
+          XR_SUCCESS);
     CHECK(mask.vertexCountOutput == 0);
 }
 
-TEST_CASE_FIXTURE(WalkingFixture, "spaces are located in one another as the script moves the head, and views at its eyes") {
-    const XrSpace view = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW), stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
+TEST_CASE_FIXTURE(WalkingFixture,
+                  "spaces are located in one another as the script moves the head, and views at its eyes") {
+    const XrSpace view = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW),
+                  stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
     XrSpaceVelocity velocity{XR_TYPE_SPACE_VELOCITY};
     const XrSpaceLocation location = locate(view, stage, kStart + 1'000'000'000, &velocity);
     CHECK(location.locationFlags == (kValid | kTracked));
@@ -90,16 +106,21 @@ TEST_CASE_FIXTURE(WalkingFixture, "spaces are located in one another as the scri
     const auto find = [&] { return list(2u, &count, views.data()); };
     CHECK(find() == XR_SUCCESS);
     CHECK(state.viewStateFlags != 0);
-    CHECK(these(views[1].pose.position.x - views[0].pose.position.x, views[0].fov.angleLeft, views[0].fov.angleUp) ==
+    CHECK(these(views[1].pose.position.x - views[0].pose.position.x, views[0].fov.angleLeft,
+                views[0].fov.angleUp) ==
           these(doctest::Approx(0.06), doctest::Approx(-50 * M_PI / 180), doctest::Approx(45 * M_PI / 180)));
     CHECK(views[0].fov.angleDown == doctest::Approx(-48 * M_PI / 180));
     CHECK(views[1].fov.angleLeft == doctest::Approx(-45 * M_PI / 180));
     CHECK(xrLocateViews(session, &info, nullptr, 2, &count, views.data()) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(these(with(info.displayTime, 0, find), with(info.space, XR_NULL_HANDLE, find), with(info.viewConfigurationType, kMono, find)) ==
-          these(XR_ERROR_TIME_INVALID, XR_ERROR_HANDLE_INVALID, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED));
+    CHECK(
+        these(with(info.displayTime, 0, find), with(info.space, XR_NULL_HANDLE, find),
+              with(info.viewConfigurationType, kMono, find)) ==
+        these(XR_ERROR_TIME_INVALID, XR_ERROR_HANDLE_INVALID, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED));
 }
 
-TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, its outline goes once round the axis, counter-clockwise") {
+TEST_CASE_FIXTURE(
+    WalkingFixture,
+    "the visibility mask is a mesh in two calls, its outline goes once round the axis, counter-clockwise") {
     const auto getMask = XR(xrGetVisibilityMaskKHR);
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     CHECK(getMask(session, kStereo, 0, kHidden, &mask) == XR_SUCCESS);
@@ -121,12 +142,14 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, i
     CHECK(getMask(session, kStereo, 0, kHidden, &mask) == XR_SUCCESS);
     for (const std::uint32_t index : indices) { CHECK(index < vertices.size()); }
     CHECK(getMask(session, kStereo, 2, kHidden, &mask) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(getMask(session, kStereo, 0, static_cast<XrVisibilityMaskTypeKHR>(9), &mask) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(getMask(session, kStereo, 0, static_cast<XrVisibilityMaskTypeKHR>(9), &mask) ==
+          XR_ERROR_VALIDATION_FAILURE);
     CHECK(getMask(session, kMono, 0, kHidden, &mask) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
     CHECK(getMask(XR_NULL_HANDLE, kStereo, 0, kHidden, &mask) == XR_ERROR_HANDLE_INVALID);
 
     // Counter-clockwise triangles inside the view, which together fill it.
-    const double width = std::tan(50 * M_PI / 180) + std::tan(40 * M_PI / 180), height = 1 + std::tan(48 * M_PI / 180);
+    const double width = std::tan(50 * M_PI / 180) + std::tan(40 * M_PI / 180),
+                 height = 1 + std::tan(48 * M_PI / 180);
     double areas[2] = {};
     for (const int visible : {0, 1}) {
         const Mask mesh(*this, 0, visible != 0 ? XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR : kHidden);
@@ -160,7 +183,8 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, i
 }
 
 TEST_CASE("a mask that changes with the eye's angles is announced once, for that eye") {
-    const SessionFixture made("size 64 64\nframes none\nrate 10\nvisibility-mask on\nat 0.55 eye right angles -30 30 30 -30\n");
+    const SessionFixture made(
+        "size 64 64\nframes none\nrate 10\nvisibility-mask on\nat 0.55 eye right angles -30 30 30 -30\n");
     made.focus();
     for (int i = 3; i < 6; ++i) { made.frame(); }
     XrEventDataBuffer event;
@@ -174,12 +198,14 @@ TEST_CASE("a mask that changes with the eye's angles is announced once, for that
 
 TEST_CASE("LOCAL_FLOOR is there in 1.1, and in 1.0 by its extension: LOCAL brought down to the floor") {
     for (const auto& [version, extensions] :
-         {std::pair(k1_1, Extensions{}), std::pair(k1_0, Extensions{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}), std::pair(k1_0, Extensions{})}) {
+         {std::pair(k1_1, Extensions{}), std::pair(k1_0, Extensions{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}),
+          std::pair(k1_0, Extensions{})}) {
         const HeadlessSession made(version, extensions, kAside);
         XrReferenceSpaceType types[8];
         std::uint32_t count = 0;
         REQUIRE(made.XR(xrEnumerateReferenceSpaces)(made.session, 8, &count, types) == XR_SUCCESS);
-        const bool is_listed = std::count(types, types + count, kFloor) == 1, is_known = version == k1_1 || !extensions.empty();
+        const bool is_listed = std::count(types, types + count, kFloor) == 1,
+                   is_known = version == k1_1 || !extensions.empty();
         CHECK(is_listed == is_known);
         XrExtent2Df bounds{-1, -1};
         CHECK(made.XR(xrGetReferenceSpaceBoundsRect)(made.session, kFloor, &bounds) ==
@@ -197,16 +223,20 @@ TEST_CASE("LOCAL_FLOOR is there in 1.1, and in 1.0 by its extension: LOCAL broug
 }
 
 TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that is there") {
-    const std::vector<XrReferenceSpaceType> one{XR_REFERENCE_SPACE_TYPE_LOCAL}, both{XR_REFERENCE_SPACE_TYPE_LOCAL, kFloor};
+    const std::vector<XrReferenceSpaceType> one{XR_REFERENCE_SPACE_TYPE_LOCAL},
+        both{XR_REFERENCE_SPACE_TYPE_LOCAL, kFloor};
     for (const auto& [version, extensions, expected] :
-         {std::tuple(k1_0, Extensions{}, one), std::tuple(k1_0, Extensions{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}, both),
+         {std::tuple(k1_0, Extensions{}, one),
+          std::tuple(k1_0, Extensions{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}, both),
           std::tuple(k1_1, Extensions{}, both)}) {
         const HeadlessSession made(version, extensions,
-                                   "rate 10\nhead 0 position 1 1.6 0 turn 90 0\nhead 1 position -1 2.6 0 turn 190 0\nat 0.15 recentre\n");
+                                   "rate 10\nhead 0 position 1 1.6 0 turn 90 0\nhead 1 position -1 2.6 0 "
+                                   "turn 190 0\nat 0.15 recentre\n");
         made.begin();
         for (int frame = 0; frame < 3; ++frame) { REQUIRE(made.sync() == XR_SUCCESS); }
         std::vector<XrReferenceSpaceType> announced;
-        for (const auto& change : made.events<XrEventDataReferenceSpaceChangePending>(XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING)) {
+        for (const auto& change : made.events<XrEventDataReferenceSpaceChangePending>(
+                 XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING)) {
             CHECK(these(change.session, change.changeTime) == these(made.session, kStart + 150'000'000));
             // From LOCAL's first origin, at the head's pose at time 0, to the head's pose now; LOCAL_FLOOR is
             // below it both times.
@@ -224,7 +254,8 @@ TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that i
 TEST_CASE("spaces are located all at once, as one by one") {
     const HeadlessSession made(k1_1, {}, kAside);
     const auto locateSpaces = made.XR(xrLocateSpaces);
-    const XrSpace view = made.makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW), stage = made.makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
+    const XrSpace view = made.makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW),
+                  stage = made.makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
     XrSpace spaces[3] = {view, made.makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL), stage};
     XrSpaceVelocityData speeds[3];
     XrSpaceVelocities velocities{XR_TYPE_SPACE_VELOCITIES, nullptr, 3, speeds};
@@ -239,17 +270,20 @@ TEST_CASE("spaces are located all at once, as one by one") {
         CHECK(places[i].locationFlags == location.locationFlags);
         CHECK(std::memcmp(&places[i].pose, &location.pose, sizeof location.pose) == 0);
         CHECK(speeds[i].velocityFlags == speed.velocityFlags);
-        CHECK(std::memcmp(&speeds[i].linearVelocity, &speed.linearVelocity, sizeof speed.linearVelocity) == 0);
+        CHECK(std::memcmp(&speeds[i].linearVelocity, &speed.linearVelocity, sizeof speed.linearVelocity) ==
+              0);
     }
     CHECK(places[0].pose.position.x == doctest::Approx(1.5));
     CHECK(speeds[0].linearVelocity.x == doctest::Approx(1));
 
-    CHECK(with(info.spaceCount, 0, [&] { return with(locations.locationCount, 0, locate); }) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(with(info.spaceCount, 0, [&] { return with(locations.locationCount, 0, locate); }) ==
+          XR_ERROR_VALIDATION_FAILURE);
     checkChanges(locate, XR_ERROR_VALIDATION_FAILURE, to(info.spaceCount, 2), to(locations.locationCount, 2),
-                 to(velocities.velocityCount, 2), to(velocities.velocities, nullptr), to(locations.locations, nullptr),
-                 to(info.spaces, nullptr));
+                 to(velocities.velocityCount, 2), to(velocities.velocities, nullptr),
+                 to(locations.locations, nullptr), to(info.spaces, nullptr));
     checkChanges(locate, XR_ERROR_TIME_INVALID, to(info.time, 0), to(info.time, -42));
-    checkChanges(locate, XR_ERROR_HANDLE_INVALID, to(info.baseSpace, XR_NULL_HANDLE), to(spaces[2], XR_NULL_HANDLE));
+    checkChanges(locate, XR_ERROR_HANDLE_INVALID, to(info.baseSpace, XR_NULL_HANDLE),
+                 to(spaces[2], XR_NULL_HANDLE));
     checkArguments(locateSpaces, made.session, &info, &locations);
 }
 

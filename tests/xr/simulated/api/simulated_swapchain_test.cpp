@@ -5,7 +5,8 @@
 
 SUITE(simulated_swapchain) {
 
-constexpr XrSwapchainUsageFlags kWritten = XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, kMutable = XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
+constexpr XrSwapchainUsageFlags kWritten = XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT,
+                                kMutable = XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
 constexpr XrSwapchainImageWaitInfo kWait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
 
 // Vulkan's loader, which records how images are created.
@@ -14,12 +15,15 @@ struct ImageRecorder {
     static inline PFN_vkCreateImage create_image = nullptr;
     static inline std::vector<VkImageCreateInfo> made;
 
-    static VkResult createImage(VkDevice device, const VkImageCreateInfo* info, const VkAllocationCallbacks* allocator, VkImage* image) {
+    static VkResult createImage(VkDevice device, const VkImageCreateInfo* info,
+                                const VkAllocationCallbacks* allocator, VkImage* image) {
         made.push_back(*info);
         return create_image(device, info, allocator, image);
     }
     static PFN_vkVoidFunction findInDevice(VkDevice device, const char* name) {
-        if (std::string_view(name) == "vkGetDeviceProcAddr") { return reinterpret_cast<PFN_vkVoidFunction>(findInDevice); }
+        if (std::string_view(name) == "vkGetDeviceProcAddr") {
+            return reinterpret_cast<PFN_vkVoidFunction>(findInDevice);
+        }
         const PFN_vkVoidFunction found = find_in_device(device, name);
         if (std::string_view(name) != "vkCreateImage") { return found; }
         create_image = reinterpret_cast<PFN_vkCreateImage>(found);
@@ -45,7 +49,9 @@ std::vector<std::uint32_t> turnsOf(const std::string& images, int times) {
     return found;
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "Vulkan's requirements are a range of versions, asked for before a session, its own refusal is told") {
+TEST_CASE_FIXTURE(
+    InstanceFixture,
+    "Vulkan's requirements are a range of versions, asked for before a session, its own refusal is told") {
     const auto getRequirements = XR(xrGetVulkanGraphicsRequirements2KHR);
     XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
     CHECK(getRequirements(instance, system + 1, &requirements) == XR_ERROR_SYSTEM_INVALID);
@@ -65,8 +71,13 @@ TEST_CASE_FIXTURE(InstanceFixture, "Vulkan's requirements are a range of version
     VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
     vulkan_info.enabledExtensionCount = 1;
     vulkan_info.ppEnabledExtensionNames = &nothing;
-    XrVulkanInstanceCreateInfoKHR info{
-        XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, &vulkan_info, nullptr};
+    XrVulkanInstanceCreateInfoKHR info{XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR,
+                                       nullptr,
+                                       system,
+                                       0,
+                                       vkGetInstanceProcAddr,
+                                       &vulkan_info,
+                                       nullptr};
     VkInstance vulkan = VK_NULL_HANDLE;
     VkResult result = VK_SUCCESS;
     const auto make = [&] { return create(instance, &info, &vulkan, &result); };
@@ -74,13 +85,17 @@ TEST_CASE_FIXTURE(InstanceFixture, "Vulkan's requirements are a range of version
     CHECK(result == VK_ERROR_EXTENSION_NOT_PRESENT);
     CHECK(with(info.createFlags, 1, make) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(with(info.systemId, 9, make) == XR_ERROR_SYSTEM_INVALID);
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.pfnGetInstanceProcAddr, nullptr), to(info.vulkanCreateInfo, nullptr));
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.pfnGetInstanceProcAddr, nullptr),
+                 to(info.vulkanCreateInfo, nullptr));
     checkArguments(create, instance, &info, &vulkan, &result);
 }
 
-TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of Vulkan's instance, the same each time, and devices are made on it alone") {
+TEST_CASE_FIXTURE(
+    VulkanFixture,
+    "the graphics device is one of Vulkan's instance, the same each time, and devices are made on it alone") {
     const auto get = XR(xrGetVulkanGraphicsDevice2KHR);
-    XrVulkanGraphicsDeviceGetInfoKHR get_info{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
+    XrVulkanGraphicsDeviceGetInfoKHR get_info{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system,
+                                              vulkan};
     VkPhysicalDevice found = VK_NULL_HANDLE;
     const auto find = [&] { return get(instance, &get_info, &found); };
     CHECK(find() == XR_SUCCESS);
@@ -96,8 +111,14 @@ TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of Vulkan's instanc
     CHECK(find() == XR_SUCCESS);
 
     const VkDeviceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
-    XrVulkanDeviceCreateInfoKHR info{
-        XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, physical_device, &vulkan_info, nullptr};
+    XrVulkanDeviceCreateInfoKHR info{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR,
+                                     nullptr,
+                                     system,
+                                     0,
+                                     vkGetInstanceProcAddr,
+                                     physical_device,
+                                     &vulkan_info,
+                                     nullptr};
     VkDevice made = VK_NULL_HANDLE;
     VkResult result = VK_SUCCESS;
     checkArguments(XR(xrCreateVulkanDeviceKHR), instance, &info, &made, &result);
@@ -110,7 +131,8 @@ TEST_CASE("the older extension has functions of its own, and needs no extensions
     const DirectInstance made(k1_0, {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME});
     CHECK_FALSE(made.has("xrCreateVulkanInstanceKHR"));
     CHECK(made.has("xrGetVulkanGraphicsDeviceKHR"));
-    for (const auto getExtensions : {made.XR(xrGetVulkanInstanceExtensionsKHR), made.XR(xrGetVulkanDeviceExtensionsKHR)}) {
+    for (const auto getExtensions :
+         {made.XR(xrGetVulkanInstanceExtensionsKHR), made.XR(xrGetVulkanDeviceExtensionsKHR)}) {
         std::uint32_t count = 0;
         char text[4] = "no";
         CHECK(getExtensions(made.instance, 1, 0, &count, nullptr) == XR_SUCCESS);
@@ -125,14 +147,18 @@ TEST_CASE("the older extension has functions of its own, and needs no extensions
     CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
     CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
     CHECK(getRequirements(made.instance, 2, &requirements) == XR_ERROR_SYSTEM_INVALID);
-    checkArguments([&](XrInstance of, auto* place) { return getRequirements(of, 1, place); }, made.instance, &requirements);
+    checkArguments([&](XrInstance of, auto* place) { return getRequirements(of, 1, place); }, made.instance,
+                   &requirements);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swapchain is refused for what it cannot be") {
-    const auto formats = checkList<std::int64_t>([&](auto... step) { return xrEnumerateSwapchainFormats(session, step...); });
+TEST_CASE_FIXTURE(SessionFixture,
+                  "formats are enumerated, sRGB first, and a swapchain is refused for what it cannot be") {
+    const auto formats =
+        checkList<std::int64_t>([&](auto... step) { return xrEnumerateSwapchainFormats(session, step...); });
     CHECK(formats.front() == VK_FORMAT_R8G8B8A8_SRGB);
     const std::set<int64_t> all(formats.begin(), formats.end());
-    for (const VkFormat format : {VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_D32_SFLOAT}) {
+    for (const VkFormat format : {VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM,
+                                  VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_D32_SFLOAT}) {
         CHECK(all.contains(format));
     }
     std::uint32_t count = 0;
@@ -142,7 +168,8 @@ TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swa
     XrSwapchainCreateInfo info = swapchainInfo();
     const auto make = [&] { return xrCreateSwapchain(session, &info, &swapchain); };
     CHECK(with(info.format, VK_FORMAT_R8_UNORM, make) == XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED);
-    for (std::uint32_t* size : {&info.width, &info.height, &info.arraySize, &info.mipCount, &info.sampleCount}) {
+    for (std::uint32_t* size :
+         {&info.width, &info.height, &info.arraySize, &info.mipCount, &info.sampleCount}) {
         CHECK(with(*size, 0, make) == XR_ERROR_VALIDATION_FAILURE);
     }
     checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.width, 1 << 20), to(info.mipCount, 8));
@@ -150,8 +177,10 @@ TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swa
     CHECK(with(info.faceCount, 2, make) == XR_ERROR_VALIDATION_FAILURE);
     checkChanges(make, XR_ERROR_FEATURE_UNSUPPORTED, to(info.faceCount, 6),
                  to(info.createFlags, XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT));
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.createFlags, 1 << 20), to(info.usageFlags, 1 << 20));
-    CHECK(with(info.usageFlags, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, make) == XR_ERROR_FEATURE_UNSUPPORTED);
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.createFlags, 1 << 20),
+                 to(info.usageFlags, 1 << 20));
+    CHECK(with(info.usageFlags, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, make) ==
+          XR_ERROR_FEATURE_UNSUPPORTED);
     checkChanges(make, XR_SUCCESS, to(info.mipCount, 7), to(info.arraySize, 2));
     checkArguments(xrCreateSwapchain, session, &info, &swapchain);
 
@@ -163,15 +192,19 @@ TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swa
     CHECK(make() == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole, twice, and freed in between, and Vulkan agrees") {
+TEST_CASE_FIXTURE(
+    SessionFixture,
+    "every format, use and shape can be held whole, twice, and freed in between, and Vulkan agrees") {
     constexpr XrSwapchainUsageFlags kSampled = XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
-    constexpr XrSwapchainUsageFlags kCopied = XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
+    constexpr XrSwapchainUsageFlags kCopied =
+        XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
     std::uint32_t count = 0;
     std::int64_t formats[32];
     REQUIRE(xrEnumerateSwapchainFormats(session, 32, &count, formats) == XR_SUCCESS);
     for (std::uint32_t i = 0; i < count; ++i) {
-        for (const XrSwapchainUsageFlags use : {XrSwapchainUsageFlags{0}, kSampled, kCopied, kSampled | kCopied, kMutable,
-                                                kSampled | kMutable, kWritten | kMutable, kWritten}) {
+        for (const XrSwapchainUsageFlags use :
+             {XrSwapchainUsageFlags{0}, kSampled, kCopied, kSampled | kCopied, kMutable, kSampled | kMutable,
+              kWritten | kMutable, kWritten}) {
             for (const std::uint32_t shape : {0, 1, 2, 3}) {
                 XrSwapchainCreateInfo info = swapchainInfo(static_cast<VkFormat>(formats[i]));
                 // One of the uses is not as an attachment.
@@ -190,7 +223,8 @@ TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole
                 for (int round = 0; round < (shape == 3 ? 1 : 2); ++round) {
                     for (std::size_t held = 0; held < images; ++held) { acquire(swapchain); }
                     for (std::size_t held = 0; held < images; ++held) {
-                        checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &kWait), xrReleaseSwapchainImage(swapchain, nullptr)});
+                        checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &kWait),
+                                               xrReleaseSwapchainImage(swapchain, nullptr)});
                     }
                 }
                 CHECK(xrDestroySwapchain(swapchain) == XR_SUCCESS);
@@ -202,7 +236,9 @@ TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole
     makeSwapchain(info);
 }
 
-TEST_CASE("images are made by the application's own loader, and ask for extended usage, of Vulkan 1.1, for shaders that write alone") {
+TEST_CASE(
+    "images are made by the application's own loader, and ask for extended usage, of Vulkan 1.1, for shaders "
+    "that write alone") {
     const SessionFixture recorded(kQuietScript, {}, ImageRecorder::find);
     const auto flagsFor = [&](XrSwapchainUsageFlags usage) {
         XrSwapchainCreateInfo info = swapchainInfo();
@@ -212,24 +248,29 @@ TEST_CASE("images are made by the application's own loader, and ask for extended
         return ImageRecorder::made.at(0).flags;
     };
     CHECK(these(flagsFor(0), flagsFor(kMutable), flagsFor(kMutable | kWritten)) ==
-          these(0, VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT, (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT)));
+          these(0, VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT,
+                (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT)));
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "images are acquired, waited for and released in this order, not more than there are, oldest first") {
+TEST_CASE_FIXTURE(
+    SessionFixture,
+    "images are acquired, waited for and released in this order, not more than there are, oldest first") {
     const XrSwapchain swapchain = makeSwapchain();
     const std::vector<VkImage> images = imagesOf(swapchain);
     CHECK(images.size() == 3);
     CHECK(std::set<VkImage>(images.begin(), images.end()).size() == 3);
     CHECK(imagesOf(swapchain) == images);
     const auto list = [&](std::uint32_t capacity, std::uint32_t* total, XrSwapchainImageVulkan2KHR* found) {
-        return xrEnumerateSwapchainImages(swapchain, capacity, total, reinterpret_cast<XrSwapchainImageBaseHeader*>(found));
+        return xrEnumerateSwapchainImages(swapchain, capacity, total,
+                                          reinterpret_cast<XrSwapchainImageBaseHeader*>(found));
     };
     checkList<XrSwapchainImageVulkan2KHR>(list, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR});
     std::uint32_t count = 0;
     CHECK(xrEnumerateSwapchainImages(XR_NULL_HANDLE, 0, &count, nullptr) == XR_ERROR_HANDLE_INVALID);
 
     std::uint32_t index = 99;
-    checkEach(XR_ERROR_CALL_ORDER_INVALID, {xrWaitSwapchainImage(swapchain, &kWait), xrReleaseSwapchainImage(swapchain, nullptr)});
+    checkEach(XR_ERROR_CALL_ORDER_INVALID,
+              {xrWaitSwapchainImage(swapchain, &kWait), xrReleaseSwapchainImage(swapchain, nullptr)});
     CHECK(xrAcquireSwapchainImage(swapchain, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
     CHECK(index < 3);
@@ -246,7 +287,8 @@ TEST_CASE_FIXTURE(SessionFixture, "images are acquired, waited for and released 
     const std::uint32_t first = acquire(swapchain);
     CHECK(std::set{first, acquire(swapchain), acquire(swapchain)}.size() == 3);
     CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_ERROR_CALL_ORDER_INVALID);
-    checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &at_once), xrReleaseSwapchainImage(swapchain, nullptr)});
+    checkEach(XR_SUCCESS,
+              {xrWaitSwapchainImage(swapchain, &at_once), xrReleaseSwapchainImage(swapchain, nullptr)});
     CHECK(acquire(swapchain) == first);
 
     // A static swapchain has one image, which can be acquired once.
@@ -269,7 +311,8 @@ TEST_CASE("a slow image times out, and is there later; not while a session is be
         CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_TIMEOUT_EXPIRED);
         CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
         CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_TIMEOUT_EXPIRED);
-        checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &wait), xrReleaseSwapchainImage(swapchain, nullptr)});
+        checkEach(XR_SUCCESS,
+                  {xrWaitSwapchainImage(swapchain, &wait), xrReleaseSwapchainImage(swapchain, nullptr)});
     }
     const SessionFixture losing("size 64 64\nframes none\nat 0 slow-images 2\nat 0 lose-session\n");
     const XrSwapchain swapchain = losing.makeSwapchain();
@@ -284,14 +327,17 @@ TEST_CASE("a slow image times out, and is there later; not while a session is be
 TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on every turn") {
     const Painter painter(*this);
     for (const bool is_depth : {false, true}) {
-        const VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        const XrSwapchain swapchain = makeSwapchain(swapchainInfo(is_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R8G8B8A8_SRGB));
+        const VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                              : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        const XrSwapchain swapchain =
+            makeSwapchain(swapchainInfo(is_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R8G8B8A8_SRGB));
         for (int round = 0; round < 5; ++round) {
             const VkImage image = imagesOf(swapchain)[acquire(swapchain)];
             REQUIRE(xrWaitSwapchainImage(swapchain, &kWait) == XR_SUCCESS);
             // Uses the image as a drawing application would; validation checks the layout.
             painter.run([&](VkCommandBuffer commands) {
-                Painter::move(commands, image, 1, layout, layout, is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT);
+                Painter::move(commands, image, 1, layout, layout,
+                              is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT);
             });
             REQUIRE(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
         }
@@ -300,7 +346,8 @@ TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on ev
 
 TEST_CASE("images come in as many, and in the order, as the script says") {
     CHECK(these(turnsOf("images 2", 4), turnsOf("images 1", 2), turnsOf("images 4 reversed", 5)) ==
-          these(std::vector<std::uint32_t>{0, 1, 0, 1}, std::vector<std::uint32_t>{0, 0}, std::vector<std::uint32_t>{3, 2, 1, 0, 3}));
+          these(std::vector<std::uint32_t>{0, 1, 0, 1}, std::vector<std::uint32_t>{0, 0},
+                std::vector<std::uint32_t>{3, 2, 1, 0, 3}));
     const auto order = turnsOf("images 5 shuffled", 40);
     CHECK(std::set(order.begin(), order.end()).size() == 5);
     std::size_t in_turn = 0;

@@ -31,7 +31,8 @@ void inThreads(int threads, const std::function<void(int)>& work) {
     }
 }
 
-TEST_CASE_FIXTURE(VulkanFixture, "of many threads that make a session one gets it, and a path is one number for all") {
+TEST_CASE_FIXTURE(VulkanFixture,
+                  "of many threads that make a session one gets it, and a path is one number for all") {
     const XrGraphicsBindingVulkan2KHR graphics = binding();
     const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
     for (int round = 0; round < 5; ++round) {
@@ -58,7 +59,8 @@ TEST_CASE_FIXTURE(VulkanFixture, "of many threads that make a session one gets i
             failures.expect(xrStringToPath(instance, text.c_str(), &path) == XR_SUCCESS);
             char back[XR_MAX_PATH_LENGTH] = "";
             std::uint32_t count = 0;
-            failures.expect(xrPathToString(instance, path, sizeof back, &count, back) == XR_SUCCESS && text == back);
+            failures.expect(xrPathToString(instance, path, sizeof back, &count, back) == XR_SUCCESS &&
+                            text == back);
             found[static_cast<std::size_t>(thread)].push_back(path);
         }
     });
@@ -66,18 +68,20 @@ TEST_CASE_FIXTURE(VulkanFixture, "of many threads that make a session one gets i
     for (const auto& paths : found) { CHECK(paths == found.front()); }
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "each thread makes, uses and destroys its own, while another thread runs frames") {
+TEST_CASE_FIXTURE(SessionFixture,
+                  "each thread makes, uses and destroys its own, while another thread runs frames") {
     const XrActionSet walking = makeActionSet("walking");
     const XrPath left = path("/user/hand/left");
     const XrAction jump = makeAction(walking, "jump", XR_ACTION_TYPE_BOOLEAN_INPUT, {left});
     const XrAction grip = makeAction(walking, "grip", XR_ACTION_TYPE_POSE_INPUT, {left});
-    REQUIRE(suggest(kSimple, {{jump, path("/user/hand/left/input/select/click")}, {grip, path("/user/hand/left/input/grip/pose")}}) ==
-            XR_SUCCESS);
+    REQUIRE(suggest(kSimple, {{jump, path("/user/hand/left/input/select/click")},
+                              {grip, path("/user/hand/left/input/grip/pose")}}) == XR_SUCCESS);
     attach({walking});
     focus();
     const XrSwapchainCreateInfo swapchain_info = swapchainInfo();
     const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
-    const XrReferenceSpaceCreateInfo space_info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_VIEW, kIdentity};
+    const XrReferenceSpaceCreateInfo space_info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr,
+                                                XR_REFERENCE_SPACE_TYPE_VIEW, kIdentity};
     const XrActionSpaceCreateInfo hand_info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, left, kIdentity};
     const XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, jump, left};
     Failures failures;
@@ -130,7 +134,9 @@ TEST_CASE_FIXTURE(SessionFixture, "each thread makes, uses and destroys its own,
     CHECK(failures.count == 0);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "one thread waits for frames while another ends the ones before, each a period after the other") {
+TEST_CASE_FIXTURE(
+    SessionFixture,
+    "one thread waits for frames while another ends the ones before, each a period after the other") {
     begin();
     constexpr int kFrames = 30;
     std::mutex lock;

@@ -17,7 +17,8 @@ using Rgb = std::array<int, 3>;
 
 constexpr float kEighthTurn = 0.78539816f;
 constexpr XrFovf kSquare{-kEighthTurn, kEighthTurn, kEighthTurn, -kEighthTurn};  // tangents -1 to 1
-constexpr Bytes4 kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255}, kBlue{0, 0, 255, 255}, kWhite{255, 255, 255, 255};
+constexpr Bytes4 kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255}, kBlue{0, 0, 255, 255},
+    kWhite{255, 255, 255, 255};
 constexpr Rgb kBlackSeen{0, 0, 0}, kRedSeen{255, 0, 0}, kGreenSeen{0, 255, 0}, kBlueSeen{0, 0, 255};
 
 int encoded(double linear) { return static_cast<int>(std::lround(255.0 * simulated::encodeSrgb(linear))); }
@@ -26,7 +27,9 @@ int encoded(double linear) { return static_cast<int>(std::lround(255.0 * simulat
 struct Wearer : SessionFixture {
     Painter painter{*this};
 
-    explicit Wearer(const std::string& script = "") : SessionFixture("rate 100\nsize 4 4\nipd 0\n" + script) { focus(); }
+    explicit Wearer(const std::string& script = "") : SessionFixture("rate 100\nsize 4 4\nipd 0\n" + script) {
+        focus();
+    }
 
     // All four texels of a quad that covers the view from 1 m.
     [[nodiscard]] XrCompositionLayerQuad quadOf(XrSwapchain swapchain) const {
@@ -39,12 +42,15 @@ struct Wearer : SessionFixture {
         return quad;
     }
     template <class Texel>
-    [[nodiscard]] XrSwapchain painted(const std::vector<Texel>& texels, VkFormat format = VK_FORMAT_R8G8B8A8_SRGB) const {
+    [[nodiscard]] XrSwapchain painted(const std::vector<Texel>& texels,
+                                      VkFormat format = VK_FORMAT_R8G8B8A8_SRGB) const {
         const XrSwapchain swapchain = painter.makeSwapchain(format, 2, 2);
         painter.paint(swapchain, 2, 2, texels);
         return swapchain;
     }
-    [[nodiscard]] XrSwapchain plain(const Bytes4& colour) const { return painted(std::vector<Bytes4>(4, colour)); }
+    [[nodiscard]] XrSwapchain plain(const Bytes4& colour) const {
+        return painted(std::vector<Bytes4>(4, colour));
+    }
 
     template <class... Layer>
     simulated::RgbPicture see(const Layer&... layers) const {
@@ -59,10 +65,12 @@ Rgb at(const simulated::RgbPicture& both, simulated::Side side, std::uint32_t x,
 }
 
 TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format says, halves as light") {
-    const std::vector<Bytes4> texels{{200, 100, 50, 255}, {1, 2, 3, 255}, {0, 128, 255, 0}, {77, 88, 99, 128}};
+    const std::vector<Bytes4> texels{
+        {200, 100, 50, 255}, {1, 2, 3, 255}, {0, 128, 255, 0}, {77, 88, 99, 128}};
     for (const auto& [format, is_bgr, is_linear] :
          {std::tuple(VK_FORMAT_R8G8B8A8_SRGB, false, false), std::tuple(VK_FORMAT_B8G8R8A8_SRGB, true, false),
-          std::tuple(VK_FORMAT_R8G8B8A8_UNORM, false, true), std::tuple(VK_FORMAT_B8G8R8A8_UNORM, true, true)}) {
+          std::tuple(VK_FORMAT_R8G8B8A8_UNORM, false, true),
+          std::tuple(VK_FORMAT_B8G8R8A8_UNORM, true, true)}) {
         CAPTURE(format);
         const simulated::RgbPicture seen = see(quadOf(painted(texels, format)));
         // The outermost of 4 x 4 pixels look past the texels' centres, so their corners show a single texel.
@@ -72,11 +80,15 @@ TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format say
                 const int value = texels[corner][is_bgr ? 2 - channel : channel];
                 expected[channel] = is_linear ? encoded(value / 255.0) : value;
             }
-            for (const simulated::Side side : simulated::kSides) { CHECK(at(seen, side, corner % 2 * 3, corner / 2 * 3) == expected); }
+            for (const simulated::Side side : simulated::kSides) {
+                CHECK(at(seen, side, corner % 2 * 3, corner / 2 * 3) == expected);
+            }
         }
     }
-    const Halves4 half{glm::packHalf1x16(0.25f), glm::packHalf1x16(0.5f), glm::packHalf1x16(3.0f), glm::packHalf1x16(1.0f)};
-    const simulated::RgbPicture seen = see(quadOf(painted(std::vector<Halves4>(4, half), VK_FORMAT_R16G16B16A16_SFLOAT)));
+    const Halves4 half{glm::packHalf1x16(0.25f), glm::packHalf1x16(0.5f), glm::packHalf1x16(3.0f),
+                       glm::packHalf1x16(1.0f)};
+    const simulated::RgbPicture seen =
+        see(quadOf(painted(std::vector<Halves4>(4, half), VK_FORMAT_R16G16B16A16_SFLOAT)));
     CHECK(at(seen, kLeft, 1, 1) == Rgb{encoded(0.25), encoded(0.5), 255});
 }
 
@@ -90,10 +102,18 @@ TEST_CASE_FIXTURE(Wearer, "each eye gets its array layer and its rectangle") {
         texels[8 + 4 * row + 2] = texels[8 + 4 * row + 3] = kGreen;
     }
     painter.paint(swapchain, 4, 2, texels);
-    const std::array<XrCompositionLayerProjectionView, 2> views{
-        {{XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, kIdentity, kSquare, {swapchain, {{0, 0}, {2, 2}}, 0}},
-         {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, kIdentity, kSquare, {swapchain, {{2, 0}, {2, 2}}, 1}}}};
-    const XrCompositionLayerProjection projection{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, local, 2, views.data()};
+    const std::array<XrCompositionLayerProjectionView, 2> views{{{XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
+                                                                  nullptr,
+                                                                  kIdentity,
+                                                                  kSquare,
+                                                                  {swapchain, {{0, 0}, {2, 2}}, 0}},
+                                                                 {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
+                                                                  nullptr,
+                                                                  kIdentity,
+                                                                  kSquare,
+                                                                  {swapchain, {{2, 0}, {2, 2}}, 1}}}};
+    const XrCompositionLayerProjection projection{
+        XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, local, 2, views.data()};
     const simulated::RgbPicture seen = see(projection);
     for (std::uint32_t i = 0; i < 16; ++i) {
         CHECK(at(seen, kLeft, i % 4, i / 4) == kRedSeen);
@@ -101,7 +121,8 @@ TEST_CASE_FIXTURE(Wearer, "each eye gets its array layer and its rectangle") {
     }
 }
 
-TEST_CASE_FIXTURE(Wearer, "what is seen is the image released last, not the one being drawn, in each of many frames") {
+TEST_CASE_FIXTURE(
+    Wearer, "what is seen is the image released last, not the one being drawn, in each of many frames") {
     const XrSwapchain swapchain = plain(kRed);
     const XrCompositionLayerQuad quad = quadOf(swapchain);
     CHECK(at(see(quad), kLeft, 1, 1) == kRedSeen);
@@ -122,7 +143,8 @@ TEST_CASE_FIXTURE(Wearer, "layers lie over one another in their order, with thei
     above.pose.position.z = -2;
     above.size = {4, 4};
     CHECK(at(see(below, above), kLeft, 0, 0) == Rgb{255, 255, 255});
-    above.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT | XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
+    above.layerFlags =
+        XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT | XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
     const int half = encoded(128.0 / 255.0);
     CHECK(at(see(below, above), kLeft, 0, 0) == Rgb{half, half, 255});
     CHECK(at(see(above, below), kLeft, 0, 0) == kBlueSeen);
@@ -158,11 +180,18 @@ TEST_CASE("a picture drawn for another pose is turned to where it belongs") {
     const Wearer made("head 0 turn 0 0\nhead 0.01 turn 26.565051177 0\n");
     const XrSwapchain swapchain = made.painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 4, 4);
     std::vector<Bytes4> texels;
-    for (std::size_t i = 0; i < 16; ++i) { texels.push_back(i % 4 == 0 ? kRed : i % 4 == 1 ? kGreen : kBlue); }
+    for (std::size_t i = 0; i < 16; ++i) {
+        texels.push_back(i % 4 == 0 ? kRed : i % 4 == 1 ? kGreen : kBlue);
+    }
     made.painter.paint(swapchain, 4, 4, texels);
     std::array<XrCompositionLayerProjectionView, 2> views{};
-    views.fill({XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, kIdentity, kSquare, {swapchain, {{0, 0}, {4, 4}}, 0}});
-    const XrCompositionLayerProjection projection{XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, made.local, 2, views.data()};
+    views.fill({XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
+                nullptr,
+                kIdentity,
+                kSquare,
+                {swapchain, {{0, 0}, {4, 4}}, 0}});
+    const XrCompositionLayerProjection projection{
+        XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, made.local, 2, views.data()};
     const simulated::RgbPicture seen = made.see(projection);
     CHECK(at(seen, kLeft, 0, 1) == kBlackSeen);
     CHECK(at(seen, kLeft, 1, 1) == kRedSeen);

@@ -25,7 +25,8 @@ struct Canvas {
         for (std::uint32_t i = 0; i < rect.extent.x * rect.extent.y; ++i) {
             const glm::uvec2 place = rect.offset + glm::uvec2(i % rect.extent.x, i / rect.extent.x);
             for (std::size_t c = 0; c < 4; ++c) {
-                bytes[(std::size_t{place.y} * size_px.x + place.x) * 4 + c] = static_cast<std::byte>(colour[c]);
+                bytes[(std::size_t{place.y} * size_px.x + place.x) * 4 + c] =
+                    static_cast<std::byte>(colour[c]);
             }
         }
     }
@@ -49,7 +50,9 @@ Canvas halves(glm::uvec2 size_px, const glm::vec4& colour) {
 Canvas noise(glm::uvec2 size_px) {
     Canvas canvas(size_px);
     std::uint32_t state = 1;
-    for (std::byte& byte : canvas.bytes) { byte = static_cast<std::byte>((state = state * 1664525u + 1013904223u) >> 24); }
+    for (std::byte& byte : canvas.bytes) {
+        byte = static_cast<std::byte>((state = state * 1664525u + 1013904223u) >> 24);
+    }
     return canvas;
 }
 
@@ -64,7 +67,9 @@ QuadLayer quad(const Canvas& canvas, const glm::dvec3& centre, const glm::dvec2&
 
 EyeView eyeOf(const glm::uvec2& size_px) { return {size_px, {}, kSquareFov}; }
 
-RgbPicture compose(const EyeView& eye, const std::vector<Layer>& layers, Side side = kLeft) { return composeEye(eye, side, layers); }
+RgbPicture compose(const EyeView& eye, const std::vector<Layer>& layers, Side side = kLeft) {
+    return composeEye(eye, side, layers);
+}
 
 std::array<int, 3> at(const RgbPicture& picture, std::uint32_t x, std::uint32_t y) {
     const std::size_t i = 3 * (std::size_t{y} * picture.size_px.x + x);
@@ -85,27 +90,35 @@ Layer blended(QuadLayer layer, bool unpremultiplied) {
 // The middle pixel of an eye that looks to the left and up.
 Rgb lookAt(const Layer& layer, double yaw_rad, double pitch_rad, const glm::dvec3& place = {}) {
     EyeView eye = eyeOf({64, 64});
-    eye.stage_from_eye = {glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0)), place};
+    eye.stage_from_eye = {
+        glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0)), place};
     return at(compose(eye, {layer}), 32, 32);
 }
 
-TEST_CASE("a projection of the eye's own view comes through byte for byte, also of a pose in single precision, or elsewhere") {
+TEST_CASE(
+    "a projection of the eye's own view comes through byte for byte, also of a pose in single precision, or "
+    "elsewhere") {
     const Canvas canvas = noise({64, 48});
-    const EyeView eye{{64, 48}, {glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3))), {1, 2, 3}}, {-0.9, 0.6, 0.7, -0.8}};
+    const EyeView eye{{64, 48},
+                      {glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3))), {1, 2, 3}},
+                      {-0.9, 0.6, 0.7, -0.8}};
     const RgbPicture seen = compose(eye, {projection(canvas, eye)});
-    for (std::size_t i = 0; i < 3 * 64 * 48; ++i) { REQUIRE(seen.bytes[i] == static_cast<std::uint8_t>(canvas.bytes[i / 3 * 4 + i % 3])); }
+    for (std::size_t i = 0; i < 3 * 64 * 48; ++i) {
+        REQUIRE(seen.bytes[i] == static_cast<std::uint8_t>(canvas.bytes[i / 3 * 4 + i % 3]));
+    }
     EyeView submitted = eye;
     submitted.stage_from_eye.orientation = glm::dquat(glm::quat(eye.stage_from_eye.orientation));
     submitted.stage_from_eye.position = {3, 4, 5};
-    submitted.fov = {static_cast<float>(-0.9), static_cast<float>(0.6), static_cast<float>(0.7), static_cast<float>(-0.8)};
+    submitted.fov = {static_cast<float>(-0.9), static_cast<float>(0.6), static_cast<float>(0.7),
+                     static_cast<float>(-0.8)};
     CHECK(compose(eye, {projection(canvas, submitted)}) == seen);
     submitted.fov.right_rad += 0.004;  // a fifth of a pixel
     CHECK(compose(eye, {projection(canvas, submitted)}) != seen);
     // A picture that covers more than the eye sees.
     const Canvas wide = noise({70, 51});
     const double across = (std::tan(0.6) + std::tan(0.9)) / 64, down = (std::tan(0.7) + std::tan(0.8)) / 48;
-    submitted.fov = {std::atan(-std::tan(0.9) - 4 * across), std::atan(std::tan(0.6) + 2 * across), std::atan(std::tan(0.7) + down),
-                     std::atan(-std::tan(0.8) - 2 * down)};
+    submitted.fov = {std::atan(-std::tan(0.9) - 4 * across), std::atan(std::tan(0.6) + 2 * across),
+                     std::atan(std::tan(0.7) + down), std::atan(-std::tan(0.8) - 2 * down)};
     const RgbPicture part = compose(eye, {projection(wide, submitted)});
     for (std::size_t i = 0; i < 3 * 64 * 48; ++i) {
         const std::size_t column = i / 3 % 64 + 4, row = i / 3 / 64 + 1;
@@ -124,7 +137,8 @@ TEST_CASE("an inset and its view are one picture: what shows through the inset i
     layer.blending = {true, false};
     const Canvas white({4, 4}, {255, 255, 255, 255});
     const RgbPicture seen = compose(eye, {projection(white, eye), layer});
-    CHECK(these(at(seen, 0, 1), at(seen, 1, 1), at(seen, 2, 2), at(seen, 2, 3), at(compose(eye, {layer}, kRight), 1, 1)) ==
+    CHECK(these(at(seen, 0, 1), at(seen, 1, 1), at(seen, 2, 2), at(seen, 2, 3),
+                at(compose(eye, {layer}, kRight), 1, 1)) ==
           these(Rgb{255, 0, 0}, Rgb{255, 255, 255}, Rgb{255, 255, 255}, Rgb{255, 0, 0}, Rgb{255, 0, 0}));
     // An empty inset counts as none.
     layer.insets[kLeft]->rect.extent = {0, 2};
@@ -133,7 +147,8 @@ TEST_CASE("an inset and its view are one picture: what shows through the inset i
 
 TEST_CASE("halves beyond white are white and NaN is black") {
     const EyeView eye = eyeOf({2, 2});
-    for (const glm::vec4& odd : {glm::vec4(-1.0f, 7.0f, 0.5f, 1.0f), glm::vec4(std::nanf(""), INFINITY, 0.5f, 1.0f)}) {
+    for (const glm::vec4& odd :
+         {glm::vec4(-1.0f, 7.0f, 0.5f, 1.0f), glm::vec4(std::nanf(""), INFINITY, 0.5f, 1.0f)}) {
         const Canvas canvas = halves({2, 2}, odd);
         // Half the light is 188.
         CHECK(at(compose(eye, {projection(canvas, eye)}), 0, 0) == Rgb{0, 255, 188});
@@ -169,7 +184,9 @@ TEST_CASE("a quad covers the pixels that its corners say, for each eye") {
         const RgbPicture seen = compose(eye, {quad(white, {0.5, 0.5, -2.0}, {2.0, 1.0})});
         for (std::uint32_t i = 0; i < 32 * 32; ++i) {
             const bool is_inside = i % 32 + shift >= 12 && i % 32 + shift < 28 && i / 32 >= 8 && i / 32 < 16;
-            if ((at(seen, i % 32, i / 32)[0] == 255) != is_inside) { FAIL_CHECK((i % 32) << ", " << (i / 32)); }
+            if ((at(seen, i % 32, i / 32)[0] == 255) != is_inside) {
+                FAIL_CHECK((i % 32) << ", " << (i / 32));
+            }
         }
     }
 }
@@ -190,8 +207,8 @@ TEST_CASE("alpha is multiplied first where it was not, and the rest shines throu
         const Layer over = blended(quad(above, {0, 0, -1}, {9, 9}), unpremultiplied);
         const RgbPicture seen = compose(eyeOf({2, 2}), {quad(below, {0, 0, -2}, {9, 9}), over});
         const double share = unpremultiplied ? 0.4 : 1.0;
-        CHECK(at(seen, 0, 0) ==
-              Rgb{encoded(share * decoded(64) + 0.6 * decoded(200)), encoded(0.6 * decoded(100)), encoded(share * decoded(32))});
+        CHECK(at(seen, 0, 0) == Rgb{encoded(share * decoded(64) + 0.6 * decoded(200)),
+                                    encoded(0.6 * decoded(100)), encoded(share * decoded(32))});
     }
 }
 
@@ -209,8 +226,10 @@ TEST_CASE("rectangles outside the picture are refused, and empty ones show nothi
     const EyeView eye = eyeOf({2, 2});
     for (const Rect& rect : {Rect{{0, 0}, {0, 4}}, Rect{{0, 0}, {4, 0}}, Rect{{4, 4}, {0, 0}}}) {
         QuadLayer flat = quad(canvas, {0, 0, -1}, {9, 9});
-        CylinderLayer cylinder{canvas.picture(), canvas.whole(), {}, 0.0, 4.0 * kEighth, 1.0, Visibility::kBoth, {}};
-        SphereLayer sphere{canvas.picture(), canvas.whole(), {}, 0.0, 8.0 * kEighth, kEighth, -kEighth, Visibility::kBoth, {}};
+        CylinderLayer cylinder{
+            canvas.picture(), canvas.whole(), {}, 0.0, 4.0 * kEighth, 1.0, Visibility::kBoth, {}};
+        SphereLayer sphere{canvas.picture(), canvas.whole(),    {}, 0.0, 8.0 * kEighth, kEighth,
+                           -kEighth,         Visibility::kBoth, {}};
         ProjectionLayer views = projection(canvas, eye);
         CHECK(at(compose(eye, {flat}), 0, 0) != kBlack);
         CHECK(at(compose(eye, {cylinder}), 0, 0) != kBlack);
@@ -224,14 +243,17 @@ TEST_CASE("rectangles outside the picture are refused, and empty ones show nothi
 }
 
 TEST_CASE("eyes side by side keep their pixels, come back from files, and those are the same every time") {
-    const RgbPicture left{{1, 2}, {1, 2, 3, 4, 5, 6}}, right{{2, 1}, {7, 8, 9, 10, 11, 12}}, both = putSideBySide(left, right);
+    const RgbPicture left{{1, 2}, {1, 2, 3, 4, 5, 6}}, right{{2, 1}, {7, 8, 9, 10, 11, 12}},
+        both = putSideBySide(left, right);
     CHECK(both == RgbPicture{{3, 2}, {1, 2, 3, 7, 8, 9, 10, 11, 12, 4, 5, 6, 0, 0, 0, 0, 0, 0}});
     const Folder folder;
     writePng(folder.path / "a.png", both);
     CHECK(readPng(folder.path / "a.png") == both);
     // No chunk differs from run to run.
     const std::string once = folder.bytesOf("a.png");
-    for (const char* chunk : {"tIME", "tEXt", "iTXt", "zTXt"}) { CHECK(once.find(chunk) == std::string::npos); }
+    for (const char* chunk : {"tIME", "tEXt", "iTXt", "zTXt"}) {
+        CHECK(once.find(chunk) == std::string::npos);
+    }
     writePng(folder.path / "b.png", both);
     CHECK(folder.bytesOf("b.png") == once);
     CHECK_THROWS_AS(writePng(folder.path / "none" / "c.png", both), std::runtime_error);
@@ -241,7 +263,9 @@ TEST_CASE("eyes side by side keep their pixels, come back from files, and those 
 #ifndef _WIN32  // on Windows, links need a privilege
 TEST_CASE_FIXTURE(InFolder, "a picture is not written through a link or over an unfinished one") {
     folder.write("victim", "keep me");
-    for (const char* name : {".a.unfinished.png", "b.png"}) { std::filesystem::create_symlink("victim", folder.path / name); }
+    for (const char* name : {".a.unfinished.png", "b.png"}) {
+        std::filesystem::create_symlink("victim", folder.path / name);
+    }
     folder.write(nameUnfinishedPicture(folder.path / "c.png").filename().string(), "keep me");
     const RgbPicture picture{{1, 1}, {1, 2, 3}};
     for (const char* name : {"a.png", "c.png"}) {
@@ -293,7 +317,8 @@ TEST_CASE("a sphere's picture lies between its angles") {
     canvas.fill({{0, 1}, {1, 1}}, {0, 0, 255, 255});
     canvas.fill({{1, 1}, {1, 1}}, {255, 255, 255, 255});
     // All longitudes, latitudes within 45 degrees.
-    SphereLayer layer{canvas.picture(), canvas.whole(), {}, 0.0, 8.0 * kEighth, kEighth, -kEighth, Visibility::kBoth, {}};
+    SphereLayer layer{canvas.picture(), canvas.whole(),    {}, 0.0, 8.0 * kEighth, kEighth,
+                      -kEighth,         Visibility::kBoth, {}};
     const auto looking = [&](double yaw_rad, double pitch_rad) { return lookAt(layer, yaw_rad, pitch_rad); };
     // A quarter of the picture's width and height from the middle, where its texels are.
     CHECK(looking(2.0 * kEighth, 0.5 * kEighth)[0] > 240);
@@ -315,16 +340,23 @@ TEST_CASE("a sphere's picture lies between its angles") {
 }
 
 TEST_CASE("a cube map's faces are in Vulkan's order, and the top left texel of each is where Vulkan has it") {
-    const std::array<Rgb, 6> colours{{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}, {255, 0, 255}, {0, 255, 255}}};
+    const std::array<Rgb, 6> colours{
+        {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}, {255, 0, 255}, {0, 255, 255}}};
     // Where each is seen: to the left and up, in eighths of a turn.
     const std::array<glm::dvec2, 6> ways{{{-2, 0}, {2, 0}, {0, 2}, {0, -2}, {4, 0}, {0, 0}}};
     std::vector<Canvas> canvases;
-    for (const auto& [r, g, b] : colours) { canvases.emplace_back(glm::uvec2(2, 2), std::array{r, g, b, 255}); }
+    for (const auto& [r, g, b] : colours) {
+        canvases.emplace_back(glm::uvec2(2, 2), std::array{r, g, b, 255});
+    }
     CubeLayer layer;
     for (std::size_t face = 0; face < 6; ++face) { layer.faces[face] = canvases[face].picture(); }
     // Infinitely far away, so the place does not matter.
-    const auto looking = [&](double yaw_rad, double pitch_rad) { return lookAt(layer, yaw_rad, pitch_rad, {5, 6, 7}); };
-    for (std::size_t face = 0; face < 6; ++face) { CHECK(looking(ways[face].x * kEighth, ways[face].y * kEighth) == colours[face]); }
+    const auto looking = [&](double yaw_rad, double pitch_rad) {
+        return lookAt(layer, yaw_rad, pitch_rad, {5, 6, 7});
+    };
+    for (std::size_t face = 0; face < 6; ++face) {
+        CHECK(looking(ways[face].x * kEighth, ways[face].y * kEighth) == colours[face]);
+    }
     layer.stage_from_cube = glm::angleAxis(2.0 * kEighth, glm::dvec3(0, 1, 0));  // its -z is the stage's -x
     CHECK(looking(2.0 * kEighth, 0) == Rgb{0, 255, 255});
     layer.visibility = Visibility::kRight;
@@ -350,7 +382,8 @@ TEST_CASE("the room shows as far as alpha lets it or is added") {
     CHECK(seen({blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{188, 0, 188});
     CHECK(seen({quad(green, {0, 0, -2}, {9, 9})}, room) == Rgb{0, 255, 0});
     CHECK(seen({quad(green, {0, 0, -2}, {9, 9})}, added) == Rgb{255, 255, 0});
-    CHECK(seen({quad(green, {0, 0, -2}, {9, 9}), blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{0, 188, 188});
+    CHECK(seen({quad(green, {0, 0, -2}, {9, 9}), blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) ==
+          Rgb{0, 188, 188});
 }
 
 }  // SUITE(simulated_compose)

@@ -33,11 +33,17 @@ TEST_CASE("a frame is one line of JSON, whose numbers read back as they were") {
 }
 
 TEST_CASE("what happens between frames has a line without a number") {
-    const Json states = Json::parse(makeBetweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
-    CHECK(states == Json{{"session_state", "EXITING"}, {"display_time_ns", 7}, {"events", {"state IDLE", "state EXITING"}}});
-    const Json refused = Json::parse(makeBetweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
+    const Json states =
+        Json::parse(makeBetweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
+    CHECK(states == Json{{"session_state", "EXITING"},
+                         {"display_time_ns", 7},
+                         {"events", {"state IDLE", "state EXITING"}}});
+    const Json refused =
+        Json::parse(makeBetweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
     CHECK_FALSE(refused.contains("frame"));
-    CHECK(refused == expecting(refused, {{"refused", "XR_ERROR_TIME_INVALID"}, {"reason", "the time is 0"}, {"should_render", true}}));
+    CHECK(refused == expecting(refused, {{"refused", "XR_ERROR_TIME_INVALID"},
+                                         {"reason", "the time is 0"},
+                                         {"should_render", true}}));
     CHECK(refused["events"].empty());
 }
 
@@ -49,7 +55,8 @@ TEST_CASE_FIXTURE(InFolder, "lines are there before the log is closed") {
         CHECK(folder.bytesOf("log") == "a line\na line\n");
     }
     CHECK_THROWS_AS(FrameLog(path / "none" / "a.jsonl"), std::runtime_error);
-    CHECK_THROWS_WITH_AS(FrameLog(path).write(""), (path.string() + ": cannot be made (File exists)").c_str(), std::runtime_error);
+    CHECK_THROWS_WITH_AS(FrameLog(path).write(""), (path.string() + ": cannot be made (File exists)").c_str(),
+                         std::runtime_error);
     CHECK(std::filesystem::file_size(path) > 0);
 }
 
@@ -57,7 +64,9 @@ SCRIPT(simulated_log, "xr/simulated/log/simulated_log") {
     const Folder folder;
     const auto begin = [&](const std::string& words, const std::string&) -> Outcome {
         FrameChoice frames;
-        if (words != "all" && words != "none") { std::istringstream(words) >> frames.first >> frames.last >> frames.every; }
+        if (words != "all" && words != "none") {
+            std::istringstream(words) >> frames.first >> frames.last >> frames.every;
+        }
         try {
             removeOldOutput(folder.path, words != "none", frames);
             return {0, "", ""};
@@ -73,12 +82,17 @@ SCRIPT(simulated_log, "xr/simulated/log/simulated_log") {
     };
     host.verbs["log"] = [&](const std::string& pictures) {
         std::string lines;
-        for (const std::string& picture : wordsIn(pictures)) { lines += frameLine(picture == "-" ? "" : picture); }
+        for (const std::string& picture : wordsIn(pictures)) {
+            lines += frameLine(picture == "-" ? "" : picture);
+        }
         folder.write(kLogName, lines);
     };
-    host.verbs["append"] = [&](const std::string& text) { std::ofstream(folder.path / kLogName, std::ios::app) << unescaped(text); };
+    host.verbs["append"] = [&](const std::string& text) {
+        std::ofstream(folder.path / kLogName, std::ios::app) << unescaped(text);
+    };
     host.verbs["begun"] = [&](const std::string& kind) {
-        const std::string refused = makeBetweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}) + "\n",
+        const std::string refused =
+                              makeBetweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}) + "\n",
                           states = makeBetweenLine({"", "", 0, true, "IDLE", {"state IDLE"}}) + "\n";
         folder.write(kLogName, kind == "refused" ? refused : kind == "states" ? states : "");
     };

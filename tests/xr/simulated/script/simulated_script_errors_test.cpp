@@ -27,11 +27,12 @@ SCRIPT(simulated_script_errors, "xr/simulated/script/simulated_script_errors") {
 #endif
     // headset FROM => TO: a headset's file with a part of it replaced. long FILE MIB: a file one byte longer
     // than that.
-    host.verbs = {{"headset", [&](const std::string& edit) { folder.write("h.toml", edited(kHeadsetToml, edit)); }},
-                  {"long", [&](const std::string& words) {
-                       const std::size_t mebibytes = std::stoul(wordsIn(words).at(1));
-                       folder.write(wordsIn(words)[0], std::string((mebibytes << 20) + 1, '#'));
-                   }}};
+    host.verbs = {
+        {"headset", [&](const std::string& edit) { folder.write("h.toml", edited(kHeadsetToml, edit)); }},
+        {"long", [&](const std::string& words) {
+             const std::size_t mebibytes = std::stoul(wordsIn(words).at(1));
+             folder.write(wordsIn(words)[0], std::string((mebibytes << 20) + 1, '#'));
+         }}};
     runScript(host);
 }
 
@@ -52,15 +53,18 @@ TEST_CASE_FIXTURE(InFolder, "a script's own file may be one that cannot be read"
     folder.write("h.toml", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
     CHECK_THROWS_AS((void)Script::load(folder.path / "h.toml"), ScriptError);
     const std::filesystem::path none = folder.path / "none.script";
-    CHECK_THROWS_WITH_AS((void)Script::load(none),
-                         (none.string() + ": cannot be read (No such file or directory), must be a script").c_str(), ScriptError);
+    CHECK_THROWS_WITH_AS(
+        (void)Script::load(none),
+        (none.string() + ": cannot be read (No such file or directory), must be a script").c_str(),
+        ScriptError);
     CHECK_THROWS_AS((void)Script::load("/dev/zero"), ScriptError);
 }
 
 TEST_CASE("a script cut off anywhere, or with any byte changed, is a script or an error") {
     const std::string walk = textIn(BINOSPLAT_SOURCE_DIR "/configs/simulated/walk.script"),
                       text = walk +
-                             "headset \"none such.toml\"\nvisibility-mask on\naim left turn 5 5\nat 5 eye left angles -1 1 1 -1\n"
+                             "headset \"none such.toml\"\nvisibility-mask on\naim left turn 5 5\nat 5 eye "
+                             "left angles -1 1 1 -1\n"
                              "at 6 controller left off\n";
     REQUIRE(text.size() > 900);
     std::vector<std::string> cut, changed;
