@@ -99,7 +99,10 @@ void Viewer::recordCopy(Commands& commands) {
 }
 
 bool Viewer::hasKeptPicture() {
-    if (!isWorthKeeping()) { return true; }
+    if (!isWorthKeeping()) {
+        copy_.drop();
+        return true;
+    }
     if (!copy_.ask()) { return false; }
     frames_of_scene_ = 0;
     if (std::function<Image()> view = copy_.take()) { notes_.keepPicture(*scenes_.get(), std::move(view)); }

@@ -21,6 +21,8 @@ public:
     // Within that frame's commands, after its pictures; may be repeated. `picture` is that of `eye`, of which
     // `view` sees a part.
     void record(Commands& commands, const Picture& picture, const Eye& eye, const Eye& view);
+    // Nobody wants it any more: the next call of ask() begins anew.
+    void drop() { frames_ = 0; }
     // What the view saw, to be made of the copy on any thread; null if there is none.
     [[nodiscard]] std::function<Image()> take();
 

@@ -73,4 +73,17 @@ TEST_CASE_FIXTURE(
     CHECK(copy.take()().size_px == glm::uvec2(16, 16));
 }
 
+TEST_CASE_FIXTURE(Gpu, "a copy that was dropped is not taken for the next one") {
+    const Painted first(*this, {16, 16}, true), later(*this, {48, 37}, true);
+    PictureCopy copy(context());
+    CHECK_FALSE(copy.ask());
+    run([&](Commands& commands) { copy.record(commands, first.picture, first.eye, first.eye); });
+    copy.drop();
+    run([&](Commands& commands) { copy.record(commands, later.picture, later.eye, later.eye); });
+    CHECK_FALSE(copy.ask());
+    // That frame is not drawn.
+    CHECK(copy.ask());
+    CHECK(copy.take() == nullptr);
+}
+
 }  // SUITE(picture_copy)
