@@ -43,9 +43,10 @@ struct History {
 History historyOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs);
 
 // Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0: Lagrange's polynomial through
-// all six. They sum to 1, and no frequency comes out stronger than it went in, at any t, so a picture may be
-// resampled again and again.
-std::array<double, 6> lagrangeWeights(double t);
+// all six, plus (4 t (1 - t))^2 times 0.024 of the fourth and 0.02 of the second differences around sample 0
+// and sample 1, in the shares 1 - t and t. They sum to 1, and no frequency comes out stronger than it went
+// in, at any t, so a picture may be resampled again and again.
+std::array<double, 6> sixTapWeights(double t);
 
 // warp_history and warp_pixels: the history as `eye` sees it, and the expected errors of its tiles.
 //

@@ -22,7 +22,7 @@ layout(push_constant, scalar) uniform Push { WarpHistoryPass pass; };
 #include "lib/moving_pixel.glsl"
 #include "lib/move_pixel.glsl"
 #include "lib/history.glsl"
-#include "lib/lagrange.glsl"
+#include "lib/six_taps.glsl"
 
 const uint kTileBlocks = kTileSize / kHistoryColumns, kRegionBlocks = kHistoryTiles * kTileBlocks;  // across
 const uvec2 kRegionCells = uvec2(kHistoryTiles, 1) * (kTileSize / kCellSize);
@@ -105,7 +105,7 @@ void resampleBlock(HistoryView view, uvec2 first, BlockMoves moves, ivec2 last) 
     const float fract_y = moves.mean.y - float(base_y);
     [[unroll]] for (int c = 0; c < kColumns; ++c) {
         const float beside = float(c) - 0.5 * float(kColumns - 1);
-        lagrangeWeights(clamp(moves.mean.y + beside * moves.across.y - float(base_y), 0, 1), weights_y[c]);
+        sixTapWeights(clamp(moves.mean.y + beside * moves.across.y - float(base_y), 0, 1), weights_y[c]);
     }
     // Sums for the block's rows to which the source rows so far contribute; the first one is completed first.
     vec4 sums[kTaps][kColumns];
@@ -120,7 +120,7 @@ void resampleBlock(HistoryView view, uvec2 first, BlockMoves moves, ivec2 last) 
             const float move_x = moves.mean.x + from_middle * moves.down.x;
             const float base_x = floor(move_x);
             float weights_x[kTaps];
-            lagrangeWeights(move_x - base_x, weights_x);
+            sixTapWeights(move_x - base_x, weights_x);
             const int y = clamp(int(first.y) + base_y + row + 3, 0, last.y);
             const int begin = y * (last.x + 1), end = begin + last.x,
                       x = begin + int(first.x) + int(base_x) - 2;

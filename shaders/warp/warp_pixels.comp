@@ -22,7 +22,7 @@ layout(push_constant, scalar) uniform Push { WarpHistoryPass pass; };
 #include "lib/move_pixel.glsl"
 #include "lib/history.glsl"
 #include "lib/cubic.glsl"
-#include "lib/lagrange.glsl"
+#include "lib/six_taps.glsl"
 
 const uint kBlockPixels = kHistoryColumns * kHistoryRows;
 
@@ -81,8 +81,8 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
     const vec2 from_first = clamp(place_px, vec2(0.5), vec2(size) - 0.5) - 0.5;
     const ivec2 base = ivec2(floor(from_first));
     float weights_x[kTaps], weights_y[kTaps];
-    lagrangeWeights(from_first.x - float(base.x), weights_x);
-    lagrangeWeights(from_first.y - float(base.y), weights_y);
+    sixTapWeights(from_first.x - float(base.x), weights_x);
+    sixTapWeights(from_first.y - float(base.y), weights_y);
     vec4 sum = vec4(0);
     vec3 across = vec3(0), down = vec3(0), lost_across = vec3(0), lost_down = vec3(0);
     [[unroll]] for (int y = 0; y < int(kTaps); ++y) {
