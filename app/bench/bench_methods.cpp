@@ -11,7 +11,8 @@ namespace {
 
 bool isMethodKey(const std::string& key) {
     const OptionRow<RunOptions>* row = findRunRow(key);
-    return key == "name" || key == "resolution" || (row != nullptr && (row->text.commands & kMethods) != 0);
+    return key == "name" || key == "resolution" || key == "frame-time" ||
+           (row != nullptr && (row->text.commands & kMethods) != 0);
 }
 
 // A method under construction: its name so far, and one value for each key.
@@ -50,9 +51,11 @@ std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOption
     }
     std::vector<BenchMethod> methods;
     for (Combination& one : combinations) {
-        const auto resolution = one.settings.extract("resolution");
-        methods.push_back({one.name, runOptions(one.settings, base).stereo,
-                           resolution ? readNumber(resolution.mapped(), 0.1, 1.0) : 1.0});
+        const auto resolution = one.settings.extract("resolution"),
+                   frame_time = one.settings.extract("frame-time");
+        BenchMethod& method = methods.emplace_back(one.name, runOptions(one.settings, base).stereo);
+        if (resolution) { method.resolution = readNumber(resolution.mapped(), 0.1, 1.0); }
+        if (frame_time) { method.frame_ms = readNumber(frame_time.mapped(), 0.0, 10000.0); }
     }
     return methods;
 }

@@ -4,6 +4,7 @@
 
 #include "app/options/options.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,19 @@ struct BenchMethod {
     StereoOptions stereo;
     // Share of width and height; scores are those of the pictures scaled up, as a compositor does.
     double resolution = 1.0;
+    // The time that a governor keeps frames of `temporal` within; 0: no governor. Unset: as --frame-time
+    // says.
+    std::optional<double> frame_ms = {};
 
     // True if both eyes equal two full renders.
     [[nodiscard]] bool isExact() const { return rendersBothInFull(stereo.mode) && resolution == 1.0; }
 };
 
 // One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px,
-// center-roi, edge-bounds, edge-samples, hole-error, newcomer-error and move-cost, and resolution. Missing
-// keys are as in `base`. A key with an array stands for a method per entry, several such keys for every
-// combination, each named "name key=value ...", or "name@0.6" by its resolution. Throws Error with file and
-// line.
+// center-roi, edge-bounds, edge-samples, hole-error, newcomer-error and move-cost, and resolution and
+// frame-time. Missing keys are as in `base`. A key with an array stands for a method per entry, several such
+// keys for every combination, each named "name key=value ...", or "name@0.6" by its resolution. Throws Error
+// with file and line.
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
 
 // A mode with the settings of `base`, named as the mode.

@@ -174,7 +174,9 @@ bool needSame(const BenchMethod& one, const BenchMethod& other) {
     const StereoOptions &a = one.stereo, &b = other.stereo;
     if (one.resolution != other.resolution) { return false; }
     if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
-    if (a.mode == Mode::kPredicted || hasHistory(a.mode) || hasHistory(b.mode)) { return a == b; }
+    if (a.mode == Mode::kPredicted || hasHistory(a.mode) || hasHistory(b.mode)) {
+        return a == b && one.frame_ms == other.frame_ms;
+    }
     return !reprojects(a.mode) ||
            (a.warp.center_rois == b.warp.center_rois &&
             (a.warp.depth_choice == gpu::kDepthInverse) == (b.warp.depth_choice == gpu::kDepthInverse));

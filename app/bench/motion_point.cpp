@@ -111,14 +111,13 @@ MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const Ru
     : camera_(run.camera),
       shared_(plainMethod(Mode::kShared, run)),
       frames_(context, scene),
-      name_(std::move(name)),
-      frame_ms_(frame_ms) {
+      name_(std::move(name)) {
     for (const BenchMethod& method : plan.methods) {
         if (method.stereo.mode == Mode::kMono) { continue; }
         MethodHistory& sequence = sequences_.emplace_back(MethodHistory{method, {}});
-        if (frame_ms > 0.0 && method.stereo.mode == Mode::kTemporal && method.resolution == 1.0) {
-            sequence.governor.emplace();
-        }
+        const bool can_be_governed = method.stereo.mode == Mode::kTemporal && method.resolution == 1.0;
+        sequence.frame_ms = can_be_governed ? method.frame_ms.value_or(frame_ms) : 0.0;
+        if (sequence.frame_ms > 0.0) { sequence.governor.emplace(); }
     }
     if (run.stereo.axes == Axes::kStay) { axes_.emplace(glm::radians(kAxesMarginDegrees)); }
 }
@@ -152,7 +151,7 @@ MethodFrames::Rendered MotionPoint::render(const Posed& pose, MethodHistory& seq
     if (sequence.next == sequence.chosen.size()) { sequence.chosen.push_back(governor.settings()); }
     MethodFrames::Rendered rendered = render(pose, sequence.method, true, sequence.chosen[sequence.next++]);
     governor.measure({.gpu_ms = rendered.result.gpu_total_ms,
-                      .period_ms = frame_ms_,
+                      .period_ms = sequence.frame_ms,
                       .work = rendered.result.work_rendered,
                       .warp_error = rendered.result.warp_error,
                       .half_loss = rendered.result.half_loss});

@@ -39,6 +39,7 @@ private:
     struct MethodHistory {
         BenchMethod method;
         std::array<Image, 2> error;  // pictures - full renders, of the previous frame
+        double frame_ms = 0.0;       // what a governed frame may take
         std::optional<Governor> governor = {};
         // The governor's choice for each pose so far, or that of another run.
         std::vector<GovernedSettings> chosen = {};
@@ -71,7 +72,6 @@ private:
     MethodFrames frames_;
     std::optional<StayingAxes> axes_;
     std::string name_;
-    double frame_ms_;
     std::vector<MethodHistory> sequences_;
     // Set from the first frame on, if there is a headset: its eyes move as one.
     std::optional<SeenThroughLens> lens_;
