@@ -155,7 +155,8 @@ void recordRasterized(const Recording& recording, const KeyValues& sorted) {
         .targets = recording.states(),
         .background = is_light ? glm::vec3(lightOf(glm::dvec3(targets.background))) : targets.background,
         .depth_choice = targets.kept.depth_choice,
-        .is_light = is_light};
+        .is_light = is_light,
+        .is_dimmed = recording.scene.traits().is_dimmed};
     const Kernel& kernel = recording.kernels.get(rasterizeKernel(recording.kernels.threadsPerCell(),
                                                                  targets.kept, recording.scene.splatKind(),
                                                                  recording.listsFull(), targets.coarse));

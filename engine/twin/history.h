@@ -126,8 +126,8 @@ SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const
 // times the frames since it was rendered, at most 32.
 double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index,
                     glm::uvec2 size_px);
-// A disc as these see it, in whichever tile it is.
-ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px);
+// A splat as these see it, in whichever tile it is. `dimmed`: 3D Gaussians are by their low-pass.
+ProjectedSplat asSeenWider(const ProjectedSplat& splat, glm::uvec2 size_px, bool dimmed);
 // select: the squared errors expected of tiles that are not rendered.
 double leftSquares(std::span<const HistoryTile> tiles, std::span<const TileKind> kinds);
 

@@ -89,9 +89,22 @@ double leftSquares(std::span<const HistoryTile> tiles, std::span<const TileKind>
     return squares;
 }
 
-ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px) {
-    ProjectedSplat wider = disc;
+ProjectedSplat asSeenWider(const ProjectedSplat& splat, glm::uvec2 size_px, bool dimmed) {
+    ProjectedSplat wider = splat;
     wider.low_pass_factor /= 4.0;
+    if (splat.gaussian) {
+        const glm::dmat2 from_pixel(splat.plane_from_pixel.x, 0.0, splat.plane_from_pixel.y,
+                                    splat.plane_from_pixel.z);
+        const glm::dmat2 spread =
+            glm::inverse(glm::transpose(from_pixel) * from_pixel) + glm::dmat2(3.0 * kScreenVariance);
+        const double a = std::sqrt(spread[1].y / glm::determinant(spread));
+        wider.plane_from_pixel = {a, -spread[1].x / spread[1].y * a, 1.0 / std::sqrt(spread[1].y)};
+        if (dimmed) {
+            wider.opacity /= glm::determinant(from_pixel) * std::sqrt(glm::determinant(spread));
+            wider.cut = 2.0 * std::log(255.0 * wider.opacity);
+        }
+        wider.reach_px = glm::sqrt(std::max(wider.cut, 0.0) * glm::dvec2(spread[0].x, spread[1].y));
+    }
     wider.box_px = glm::ivec4(0, 0, glm::ivec2(size_px));
     return wider;
 }

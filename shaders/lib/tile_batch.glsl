@@ -7,11 +7,31 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 
+// A 3D Gaussian as pixels twice as wide see it: with four times the variance on the screen.
+ProjectedSplat asSeenWider(ProjectedSplat splat, float screen_variance) {
+    const vec3 plane = splat.plane_from_pixel;
+    const float root_yy = 1 / plane.z, more = 3 * screen_variance;
+    const float yy = root_yy * root_yy, xy = -(plane.y / plane.x) * yy, root_det = root_yy / plane.x;
+    const float xx = (root_det / root_yy) * (root_det / root_yy) + (xy / root_yy) * (xy / root_yy);
+    const float wider_yy = yy + more;
+    const float wider_root_det = length(vec2(root_det, sqrt(more * (xx + wider_yy))));
+    const float a = sqrt(wider_yy) / wider_root_det;
+    splat.plane_from_pixel = vec3(a, -(xy / wider_yy) * a, 1 / sqrt(wider_yy));
+    if (pass.is_dimmed != 0) {
+        splat.opacity =
+            packOpacity(exp2(-negativeLog2Opacity(splat)) * root_det / wider_root_det, hasReference(splat));
+    }
+    return splat;
+}
+
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
     const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
     const float low_pass =
         pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
-    const ProjectedSplat splat = pass.splats.at[rank];
+    ProjectedSplat splat = pass.splats.at[rank];
+    if (kMeasures && kSplatKind != kDiscs && is_wider) {
+        splat = asSeenWider(splat, pass.eyes.at[gl_WorkGroupID.z].screen_variance);
+    }
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
     // Relative to the tile, single precision places the centre to 1e-6 px.

@@ -120,7 +120,8 @@ struct RasterizePass {
     vec3 background;
     // The depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives.
     uint depth_choice;
-    uint is_light;  // 1: colours and background are light, to be encoded after blending
+    uint is_light;   // 1: colours and background are light, to be encoded after blending
+    uint is_dimmed;  // as in ProjectPass
 };
 
 // contribute: how much each splat contributes to an eye's picture and, compared with a wanted picture, in

@@ -32,8 +32,7 @@ layout(constant_id = 8) const bool kHistory = false;  // the picture is going to
 layout(constant_id = 9) const bool kCoarse = false;   // some tiles of the list may be coarse
 layout(constant_id = 10) const bool kCut = false;     // splats show only where they are nearer than a mesh
 
-// Of 3D Gaussians the low-pass is in what is projected.
-const bool kMeasures = kHistory && kMasked && kSplatKind == kDiscs;
+const bool kMeasures = kHistory && kMasked;  // some tiles, for what pixels twice as wide would lose
 
 const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"

@@ -219,14 +219,16 @@ double widerSquares(const ViewedScene& view, const Eye& eye, const reference::Hi
     };
     const reference::Picture full = picture();
     for (reference::ProjectedSplat& splat : stages.splats) {
-        splat = reference::asSeenWider(splat, eye.size_px);
+        splat = reference::asSeenWider(splat, eye.size_px, view.scene.antialiased);
     }
     return reference::widerSquares(tile, full, picture(), index, eye.size_px);
 }
 
 TEST_CASE_FIXTURE(
     Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
-    for (const ViewedScene* view : {&atelier(), &fence()}) {
+    const ViewedScene gaussians = test::viewGaussians({200, 150}, false),
+                      dimmed = test::viewGaussians({200, 150}, true);
+    for (const ViewedScene* view : {&atelier(), &fence(), &gaussians, &dimmed}) {
         CAPTURE(view->name);
         // Two walks are equal so far; one of them renders tiles again in the last frame.
         HistoryWalk walk(*this, *view), only_warps(*this, *view);
