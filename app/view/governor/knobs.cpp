@@ -107,6 +107,7 @@ void KnobModel::learnWork(const Visit& before, const Visit& now) {
 
 void KnobModel::enter(const Knobs& knobs) {
     if (knows() && visits_.back().knobs == knobs) { return; }
+    settling_ = kMostFrames;
     doubted_ratio_ = changed_ >= kSeenForChange ? changed_ratio_ : 1.0;
     changed_ = 0;
     shares_before_ = shares_;
@@ -140,14 +141,16 @@ void KnobModel::noteChange(const KnobFrame& frame) {
         doubted_ratio_ = 1.0;
     }
     if (now.all_ms.size() < kSeenForChange) { return; }
-    const double ratio = ratioTo(shares_, frame.ms, frame.work);
+    // The fit follows the present frames, and would hide a change that comes slowly.
+    const double ratio = ratioTo(settling_ > 0 ? shares_ : settled_, frame.ms, frame.work);
     if (std::abs(std::log(ratio)) < kChangedTime) {
         changed_ = 0;
         return;
     }
     changed_ratio_ = changed_ == 0 ? ratio : 0.5 * (changed_ratio_ + ratio);
     if (++changed_ < kLastingChange) { return; }
-    scaleTimes(changed_ratio_, visits_.size());
+    scaleTimes(changed_ratio_, visits_.size() - 1);
+    settling_ = kMostFrames;
     changed_ = 0;
 }
 
@@ -181,6 +184,9 @@ void KnobModel::fit() {
     // The present frames are right.
     const double expected = sumOf(termsOf(now.knobs.scale, now.work), shares_);
     for (double& share : shares_) { share *= now.ms / expected; }
+    if (settling_ == 0) { return; }
+    settled_ = shares_;
+    --settling_;
 }
 
 double KnobModel::expectedError(const Knobs& knobs) const {

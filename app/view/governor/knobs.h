@@ -83,6 +83,8 @@ private:
     double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^3 - 1)
     int losses_ = 0;             // number of measurements
     Terms shares_{};             // as fitted to the visits
+    Terms settled_{};            // the same after the first frames at the present knobs
+    std::size_t settling_ = 0;   // how many of these are still to come
     std::size_t changed_ = 0;    // frames in a row that took that many times as long as expected
     double changed_ratio_ = 1.0;
     double doubted_ratio_ = 1.0;  // before the knobs were turned; 1: none

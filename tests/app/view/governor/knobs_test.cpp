@@ -39,7 +39,8 @@ double msAt(const Device& device, double scale, double work) {
 
 struct Minute {
     double late = 0.0, error = 0.0;  // shares of frames; mean square
-    int changes_at_last = 0;         // in the second half
+    double error_at_last = 0.0;      // in the second half
+    int changes_at_last = 0;         // likewise
     bool beaten = false;
 
     // With the governor, or with fixed knobs; then frames are late if they leave less than a tenth of the
@@ -49,7 +50,7 @@ struct Minute {
         Governor governor;
         std::mt19937 random(1), thief(2);
         std::optional<GovernedSettings> before;
-        int frames = 0;
+        int frames = 0, frames_at_last = 0;
         for (double time_s = 0.0; time_s < 60.0; ++frames) {
             governor.wish(Quality::kBalanced, Mode::kTemporal, {1.0, 1.0});
             const GovernedSettings now =
@@ -69,10 +70,15 @@ struct Minute {
             before = now;
             late += ms > (fixed ? 0.9 : 1.0) * kPeriodMs;
             error += warp_error + lossAt(place, scale);
+            if (time_s > 30.0) {
+                ++frames_at_last;
+                error_at_last += warp_error + lossAt(place, scale);
+            }
             time_s += 1e-3 * kPeriodMs * (1.0 + lost);
         }
         late /= frames;
         error /= frames;
+        error_at_last /= frames_at_last;
         beaten = governor.isBeaten();
     }
 };
@@ -83,6 +89,18 @@ constexpr std::array<Device, 3> kDevices{{{"pixels", 20.0, 0.05, 0.2, 0.0, 0.75}
 constexpr std::array<Place, 3> kPlaces{{{"smooth", 3e-5, 4.0, 3e-5, 0.8, 0.3, 0.04},
                                         {"sharp", 8e-4, 2.0, 9e-5, 0.5, 0.38, 0.075},
                                         {"between", 2e-4, 3.0, 4e-5, 0.6, 0.25, 0.06}}};
+
+// Of the fixed pairs of knobs that are hardly ever late.
+double leastError(const Device& device, const Place& place, const Change& change) {
+    double least = 1.0;
+    for (double tenths = 6.0; tenths <= 10.0; ++tenths) {
+        for (double bound_db = tenths > 6.0 ? 26.0 : 20.0; bound_db <= 30.0; ++bound_db) {
+            const Minute fixed(device, place, change, Knobs{0.1 * tenths, bound_db});
+            if (fixed.late <= 0.02) { least = std::min(least, fixed.error); }
+        }
+    }
+    return least;
+}
 
 TEST_CASE(
     "it is within a tenth of the best fixed pair of knobs, with at most 2 % of frames late, whatever "
@@ -100,18 +118,23 @@ TEST_CASE(
                 INFO("waits for ", std::string(device.waits_for), ", ", std::string(place.name),
                      ", changes: ", std::string(change.of));
                 const Minute governed(device, place, change);
-                double least = 1.0;
-                for (double tenths = 6.0; tenths <= 10.0; ++tenths) {
-                    for (double bound_db = tenths > 6.0 ? 26.0 : 20.0; bound_db <= 30.0; ++bound_db) {
-                        const Minute fixed(device, place, change, Knobs{0.1 * tenths, bound_db});
-                        if (fixed.late <= 0.02) { least = std::min(least, fixed.error); }
-                    }
-                }
                 CHECK(governed.late <= 0.02);
-                CHECK(std::sqrt(governed.error / least) <= 1.1);
+                CHECK(std::sqrt(governed.error / leastError(device, place, change)) <= 1.1);
                 if (change.of == std::string("nothing")) { CHECK(governed.changes_at_last <= 2); }
             }
         }
+    }
+}
+
+TEST_CASE("a load that goes away little by little is not taken for what the knobs have saved") {
+    const Over same = [](double) { return 1.0; };
+    const Change fades{"another program ends",
+                       [](double t) { return 3.0 - 2.0 * std::clamp((t - 8.0) / 8.0, 0.0, 1.0); }, same};
+    for (const Device& device : {kDevices[1], kDevices[2]}) {
+        INFO("waits for ", std::string(device.waits_for));
+        const Minute governed(device, kPlaces[1], fades);
+        const double least = leastError(device, kPlaces[1], {"nothing", same, same});
+        CHECK(std::sqrt(governed.error_at_last / least) <= 1.1);
     }
 }
 
