@@ -1,4 +1,4 @@
-// The commands: their words, their options, and reading both.
+// The commands: their words and options, and how both are read.
 #include "app/command_line/commands_table.h"
 
 #include "app/command_line/option_documents.h"
@@ -44,8 +44,8 @@ void addOwnCameras(Settings& line, const Settings& config) {
     if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
 }
 
-// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that
-// are in `foreign` are not read but go to `rest`.
+// Options from the command line, to which cameras may be added, then the config, then `standard`. Tables of
+// the config that are in `foreign` are not read but go to `rest`.
 RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const RunOptions& standard,
                    std::vector<SettingsTable>* rest = nullptr) {
     const std::string config = wordOf(line, kConfig.text.key);
@@ -165,7 +165,7 @@ Options makeBench(const Settings& given) {
     return bench;
 }
 
-// What was set on the panel in earlier runs. A file that is of no use keeps nobody out.
+// What was set on the panel in earlier runs. A broken file must not keep the viewer from starting.
 void readOwnPreferences(RunOptions& standard, std::vector<SettingsTable>& view) {
     const std::filesystem::path file = preferencesFile();
     std::error_code ignored;
@@ -200,7 +200,7 @@ Options makeView(const Settings& given) {
     RunOptions standard = withHistory();
     standard.stereo.half_periphery = true;
     standard.stereo.axes = Axes::kStay;
-    // Simulated runs are the same everywhere.
+    // Simulated runs must be the same everywhere.
     if (!view.simulate) { readOwnPreferences(standard, view.tables); }
     view.run = readRun(line, {"view"}, standard, &view.tables);
     return readRows(viewRows(), line, view);
