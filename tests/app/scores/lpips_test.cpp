@@ -85,9 +85,9 @@ TEST_CASE("pictures that cannot be compared are refused") {
     };
     CHECK(measure({17, 17}, {17, 17}) > 0.0);
     CHECK_THROWS_WITH_AS(measure({16, 40}, {16, 40}),
-                         "LPIPS: pictures have 16x40 pixels, must have at least 17 a side", Error);
+                         "LPIPS: pictures have 16x40 pixels, must have at least 17 on each side", Error);
     CHECK_THROWS_WITH_AS(measure({40, 16}, {40, 16}),
-                         "LPIPS: pictures have 40x16 pixels, must have at least 17 a side", Error);
+                         "LPIPS: pictures have 40x16 pixels, must have at least 17 on each side", Error);
     CHECK_THROWS_WITH_AS(measure({20, 20}, {20, 21}),
                          "cannot compare a picture of 20x20 pixels with one of 20x21", Error);
     for (const Image& bad : {makeGrey({20, 20}, 1, 0.5f), Image{}}) {
