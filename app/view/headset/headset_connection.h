@@ -1,4 +1,4 @@
-// A headset's sessions, one after the other: a lost one is followed by the next, once there is a headset.
+// A headset's sessions, one after another: a lost one is followed by the next, once there is a headset.
 #pragma once
 
 #include "app/view/headset/connected_headset.h"
@@ -47,7 +47,7 @@ private:
     Losses losses_;     // since a frame was shown
     int failures_ = 0;  // in a row, to begin the next session
     std::string why_lost_;
-    bool is_gone_ = false;  // the headset is gone, and that has been reported
+    bool is_gone_ = false;  // the headset is gone, and this has been reported
     std::chrono::steady_clock::time_point next_search_{};
 };
 
