@@ -44,8 +44,8 @@ std::optional<fs::path> trainedWeights() {
 
 TEST_CASE(
     "the distance is that of the network's description, at every size across the boundaries of pooling") {
-    // Computed in float64 with a loop for every index. Pooling halves odd sides and even ones. float32 is off
-    // by 2e-7; one channel of the last stage that is 0.1 % too large changes the result by 1.5e-6.
+    // Computed in float64 with a loop for every index. Pooling halves odd sides as well as even ones. float32
+    // differs by 2e-7; one channel of the last stage that is 0.1 % too large changes the result by 1.5e-6.
     struct {
         glm::uvec2 size_px;
         double distance;
