@@ -14,7 +14,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
-// A gap is filled pixel by pixel from its two ends; a longer one is not a crack in a surface but uncovered
+// A gap is filled pixel by pixel from its two ends; a longer run is not a crack in a surface but uncovered
 // background.
 constexpr std::uint64_t kMaxGapPx = 64;
 constexpr std::uint64_t kMaxMoveCost = 1'000'000;
