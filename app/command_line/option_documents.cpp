@@ -1,4 +1,4 @@
-// The list of commands and options for readers and shells.
+// Prints the list of commands and options for readers and shells.
 #include "app/command_line/option_documents.h"
 
 #include "app/command_line/commands_table.h"

@@ -1,4 +1,4 @@
-// Sections 10.4 and 10.5: the frame loop. In lock-step xrWaitFrame moves time on by one period and does not
+// Sections 10.4 and 10.5: the frame loop. In lock-step, xrWaitFrame advances time by one period and does not
 // sleep.
 #include <algorithm>
 #include <cmath>
