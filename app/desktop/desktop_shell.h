@@ -88,7 +88,7 @@ private:
     [[nodiscard]] std::optional<glm::dvec3> seenAt(const glm::dvec2& place_px);
     [[nodiscard]] glm::dvec3 under(const glm::dvec2& place_px);
     void goTo(const Viewpoint* viewpoint, double within_seconds = 0.35);  // null: stays
-    // What is written goes to the panel while it asks for something.
+    // Typed text goes to the panel while it asks for something.
     bool takesText(const DesktopEvent& event);
     [[nodiscard]] HeldMotion heldMotion() const {
         return panel_.entry().isOpen() ? HeldMotion() : window_.heldMotion();

@@ -4,8 +4,8 @@
 //   cull        which splats may touch a pixel of any eye
 //   compact     these in the scene's order, with the depth or the distance of their centres
 //   sort_depth  front to back
-//   project     as one eye sees them, and how many tiles each meets
-//   bin         a (tile, splat) pair for each tile a splat meets
+//   project     as one eye sees them, and how many tiles each touches
+//   bin         a (tile, splat) pair for each tile a splat touches
 //   sort_tiles  the pairs by tile, front to back within
 //   rasterize   blending: colour, alpha and depth
 // The passes that make the other eye from this one are in engine/baselines.

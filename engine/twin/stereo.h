@@ -86,7 +86,7 @@ void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const S
 std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
 
 // edge_rois: the inverse depths without one pixel in 200 at either end; the widths of the borders that the
-// source does not see; and the tiles that meet these borders.
+// source does not see; and the tiles that touch these borders.
 struct InverseDepthBounds {
     double far, near;
 };

@@ -23,7 +23,7 @@ layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
 shared uint unseen_count;
-// A splat that meets more tiles than this would keep one thread busy for long: it stays in the list, and all
+// A splat that touches more tiles than this would keep one thread busy for long: it stays in the list, and all
 // others leave it.
 const uint kLargeTiles = 64;
 const uint kDone = 0xffffffffu;
@@ -52,7 +52,7 @@ void addError(uint tile, uint steps) {
     } while (seen != before);
 }
 
-// Adds the splat's error to the tiles it meets: by one thread or, for a large splat, by all threads
+// Adds the splat's error to the tiles it touches: by one thread or, for a large splat, by all threads
 // `together`, which share its rows.
 // False if it is large, so that one thread alone must leave it.
 bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {

@@ -1,4 +1,4 @@
-// For rasterize: a batch of a tile's splats in shared memory, and which cells each of them meets.
+// For rasterize: a batch of a tile's splats in shared memory, and which cells each of them touches.
 
 // u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
 shared vec4 batch_reference[kBatchSize + 1];  // reference_px relative to the tile, u/z and v/z there

@@ -1,5 +1,5 @@
-// The tiles that a splat meets, in 64 bits: where its box begins and, if the box has at most 4x4 tiles, a bit
-// for each tile that it meets (under a mask: only tiles of the mask). Otherwise where the box ends, half
+// The tiles that a splat touches, in 64 bits: where its box begins and, if the box has at most 4x4 tiles, a bit
+// for each tile that it touches (under a mask: only tiles of the mask). Otherwise where the box ends, half
 // open; the outline must then tell again which rows meet which tiles.
 //
 //   x0 | y0 << 16,   x1 | y1 << 16                                  a large box; coordinates are below 2^11

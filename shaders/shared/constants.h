@@ -9,12 +9,12 @@ BINOSPLAT_BEGIN_SHARED
 // Tiles are the unit of binning and of patching; the 16x16 of 3DGS and 2DGS (Kerbl et al. 2023, section 6).
 BINOSPLAT_CONSTANT uint kTileSize = 16;
 // Cells are the quarters of a tile that one subgroup owns while blending, so that a splat only costs the
-// cells it meets.
+// cells it touches.
 BINOSPLAT_CONSTANT uint kCellSize = 8;
 BINOSPLAT_CONSTANT uint kCellsPerTile = 4;
 // Splats of a tile that are loaded into shared memory at a time: 128 x 56 bytes = 7 KiB, so that eight or
 // more workgroups fit into the shared memory of a GPU core; a multiple of 32, since each splat has one bit
-// that says which cells it meets.
+// that says which cells it touches.
 BINOSPLAT_CONSTANT uint kBatchSize = 128;
 
 // Threads per workgroup where each thread handles one item: as many as every device supports, and one
