@@ -92,7 +92,7 @@ def draw_side(profile, side):
         svg += f'  <circle cx="{x}" cy="{130 if is_pad else 94}" r="{24 if is_pad else 13}" fill="#9fb6d8" {SHAPE}/>\n'
         what = ": walk, or teleport" if side == 0 else ": turn, rise and sink"
         if press:
-            what += ("; pressed in: the viewpoint before", "; pressed in: the next viewpoint")[side]
+            what += ("; pressed in: the previous viewpoint", "; pressed in: the next viewpoint")[side]
         svg += label(side, *((134, 0, 124) if is_pad else (98, 0, 94)), WORDS[stick] + what)
     if menus[side]:
         is_above = click is not None  # of the pad
