@@ -98,7 +98,7 @@ def draw_side(profile, side):
         is_above = click is not None  # of the pad
         y = 88 if is_above else 122
         svg += f'  <circle cx="{x - inwards * 12}" cy="{y}" r="7" fill="#d8c79f" {SHAPE}/>\n'
-        svg += label(side, 98 if is_above else 134, -inwards * 12, y, WORDS[menus[side]] + ": the panel goes or comes")
+        svg += label(side, 98 if is_above else 134, -inwards * 12, y, WORDS[menus[side]] + ": show or hide the panel")
     if plays[side]:
         svg += f'  <circle cx="{x - inwards * 2}" cy="138" r="7" fill="#c4b5d8" {SHAPE}/>\n'
         svg += label(side, 154, -inwards * 2, 138, WORDS[plays[side]] + ": pause or play; held: the other scene")
