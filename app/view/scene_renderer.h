@@ -31,7 +31,7 @@ struct FrameViews {
 
 class SceneRenderer {
 public:
-    // `format` is the format of every session's images; the rest outlives this.
+    // `format` is the format of every session's images; the rest must outlive this.
     SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options,
                   const FrameLog& log, vk::Format format);
 

@@ -28,7 +28,8 @@ class InputFile {
 public:
     // Throws Error if `path` is missing, a directory, not a regular file, not readable or a Git LFS pointer.
     explicit InputFile(const std::string& path);
-    // A file that messages call `name`; the other files of its scene come from `others`, which outlive it.
+    // A file that messages call `name`; the other files of its scene come from `others`, which must outlive
+    // it.
     InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others);
     // A file in a folder of its own, which is removed along with it; messages call it `name`.
     InputFile(TemporaryFolder folder, const std::string& file, std::string name);

@@ -17,8 +17,8 @@ namespace binosplat {
 // For one thread at a time.
 class StreamedChunks {
 public:
-    // For a folder that contains a lod-meta.json, or an open lod-meta.json, whose SceneFiles outlive this.
-    // Throws Error if it is broken.
+    // For a folder that contains a lod-meta.json, or an open lod-meta.json, whose SceneFiles must outlive
+    // this. Throws Error if it is broken.
     explicit StreamedChunks(const std::string& folder);
     explicit StreamedChunks(InputFile& file);
 

@@ -5,7 +5,7 @@
 //               tile (recordFromHistory)
 //   kChoose     the tiles of both that are rendered again (recordChoice)
 //   kList       the splats that touch these, front to back (recordCull, recordOrder)
-//   kRenderAll  the chosen tiles, and what the next frame is told of them (recordPictures)
+//   kRenderAll the chosen tiles, and what the next frame is told about them (recordPictures)
 //
 // Before them the device is told where everything lies (describe.cpp), and after them it reports what it did
 // (report.cpp).

@@ -63,7 +63,7 @@ struct LevelsThere {
 
 class LevelChooser {
 public:
-    // `leaves` outlives this.
+    // `leaves` must outlive this.
     explicit LevelChooser(std::span<const LodLeaf> leaves) : leaves_(leaves) {}
 
     // For the eyes of one head. A level that was chosen the previous time is worth a quarter more, and one

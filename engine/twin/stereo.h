@@ -35,7 +35,7 @@ struct StereoSettings {
     double budget = 0.2;          // share of an eye's work that is spent on tiles with an error
     std::uint32_t move_cost = 0;  // of reprojecting a tile, in pairs; tiles with no more pairs are rendered
     double hole_error = 1.0, newcomer_error = 0.3;
-    // Tiles that are never seen: a byte a tile, 1 for these; empty: none. The source has no picture there.
+    // Tiles that are never seen: a byte per tile, 1 for these; empty: none. The source has no picture there.
     std::vector<std::uint8_t> source_hidden = {}, target_hidden = {};
     std::optional<Gaze> target_gaze = {};
 };

@@ -1,6 +1,6 @@
 // newcomers: splats that the target sees and the source does not. They stand in front of what was reprojected
 // and leave no hole, so the picture does not reveal them; here each adds its expected error to the tiles it
-// meets.
+// touches.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

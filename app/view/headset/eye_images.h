@@ -13,7 +13,7 @@ vk::Format chooseEyeFormat(const xr::Session& session);
 
 class EyeImages {
 public:
-    // `presenter` outlives this.
+    // `presenter` must outlive this.
     EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }

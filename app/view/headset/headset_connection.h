@@ -16,7 +16,7 @@ public:
     using Say = std::function<void(const std::string&)>;
 
     // Begins the first session; if that is lost at once, waits for the next as usual. `instance` and
-    // `context` outlive this; `panel_px` is the size of the panel's picture. Throws Interrupted while
+    // `context` must outlive this; `panel_px` is the size of the panel's picture. Throws Interrupted while
     // waiting, and what search() throws.
     HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say);
 

@@ -19,7 +19,7 @@ class FirstSteps {
 public:
     static constexpr double kSecondsEach = 7.0;
 
-    // `files` checks whether they were shown before, and records that they were; it outlives this.
+    // `files` checks whether they were shown before, and records that they were; it must outlive this.
     FirstSteps(FileWorker& files, FirstStepsShown shown) : files_(files), shown_(shown) {}
     FirstSteps(const FirstSteps&) = delete;
     FirstSteps& operator=(const FirstSteps&) = delete;

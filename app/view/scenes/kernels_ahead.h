@@ -36,7 +36,7 @@ std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuS
 // The same on a thread of its own, for a scene that is shown.
 class KernelMaker {
 public:
-    // `scene` outlives this.
+    // `scene` must outlive this.
     KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead);
     KernelMaker(const KernelMaker&) = delete;
     KernelMaker& operator=(const KernelMaker&) = delete;

@@ -16,7 +16,7 @@ using Say = std::function<void(const std::string&)>;
 
 class SceneNotes {
 public:
-    // Both outlive this.
+    // Both must outlive this.
     SceneNotes(FileWorker& files, Say say) : files_(files), say_(std::move(say)) {}
 
     // Records that the scene was shown. `complaint` has already been reported.

@@ -49,7 +49,7 @@ struct Fetched {
 
 class Fetcher {
 public:
-    // `cache` outlives it. Throws Error in a build without network access.
+    // `cache` must outlive it. Throws Error in a build without network access.
     Fetcher(const WebCache& cache, const FetchSettings& settings);
     Fetcher(const Fetcher&) = delete;
     Fetcher& operator=(const Fetcher&) = delete;

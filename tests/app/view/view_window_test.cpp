@@ -329,7 +329,7 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
         Program program(work.path, viewOnDesk("builtin:slanted-wall --simulate never.script"));
         REQUIRE(program.waitFor("has no headset yet") != "");
         if (by_cross) {
-            clickCross("^binosplat waits for a headset");
+            clickCross("^binosplat is waiting for a headset");
         } else {
             hands("search --sync --onlyvisible --name '^binosplat waits' mousemove --window %1 20 20");
             hands("key Escape");

@@ -131,7 +131,7 @@ std::vector<std::string> loggedFlags(XrCompositionLayerFlags flags) {
 
 void checkEyeVisibility(XrEyeVisibility visibility) {
     require(visibility >= XR_EYE_VISIBILITY_BOTH && visibility <= XR_EYE_VISIBILITY_RIGHT,
-            XR_ERROR_VALIDATION_FAILURE, visibility, " is no eye visibility");
+            XR_ERROR_VALIDATION_FAILURE, visibility, " is not an eye visibility");
 }
 
 Visibility visibilityOf(XrEyeVisibility visibility) {
