@@ -37,13 +37,14 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // plane_from_pixel, the ray of the pixel meets the disc's plane at
 //   1/z = inverse_depth + perspective.x dx + perspective.y dy
 //   u/z = plane_offset.x + A dx + B dy
-//   v/z = plane_offset.y + D dy where the (u, v) frame has been turned within the disc so that v/z does not
-// depend on dx and A >= 0 (rho3 = u^2 + v^2 is unchanged by that). If the centre lies beyond the near plane
-// (`low_pass`), reference_px is the projected centre and plane_offset is zero; otherwise reference_px is the
-// middle of the image (size_px / 2) and there is no low-pass. For a 3D Gaussian (`gaussian`) these are u and
-// v themselves in place of u/z and v/z, 1/z is where it is greatest along the ray, to first order and within
-// kDepthReach of the centre's, and there is no low-pass but that in plane_from_pixel. A splat that cannot
-// show anywhere (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
+//   v/z = plane_offset.y + D dy
+// where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 =
+// u^2 + v^2 is unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the
+// projected centre and plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2)
+// and there is no low-pass. For a 3D Gaussian (`gaussian`) these are u and v themselves in place of u/z and
+// v/z, 1/z is where it is greatest along the ray, to first order and within kDepthReach of the centre's, and
+// there is no low-pass but that in plane_from_pixel. A splat that cannot show anywhere (opacity at or below
+// 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
     glm::dvec2 plane_offset;

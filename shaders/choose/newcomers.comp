@@ -23,8 +23,8 @@ layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
 shared uint unseen_count;
-// A splat that touches more tiles than this would keep one thread busy for long: it stays in the list, and all
-// others leave it.
+// A splat that touches more tiles than this would keep one thread busy for long: it stays in the list, and
+// all others leave it.
 const uint kLargeTiles = 64;
 const uint kDone = 0xffffffffu;
 shared uint large_count;

@@ -1,5 +1,5 @@
-// project: the visible splats, front to back, as each eye sees them, and how many tiles each touches. The last
-// workgroup writes the length of the list of pairs.
+// project: the visible splats, front to back, as each eye sees them, and how many tiles each touches. The
+// last workgroup writes the length of the list of pairs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
