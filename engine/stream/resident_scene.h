@@ -20,10 +20,10 @@ public:
 
     struct Options {
         std::uint32_t capacity_pages = 0;  // of kPageSplats
-        // Most splats that a frame uploads; at least one page.
+        // The most that a frame uploads; at least one page.
         std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;
     };
-    // Takes all of its device memory. Throws Error if there is not that much.
+    // Allocates all of its device memory. Throws Error if there is not that much.
     ResidentScene(const Context& context, const SceneTraits& traits, const Options& options);
     ResidentScene(const ResidentScene&) = delete;
     ResidentScene& operator=(const ResidentScene&) = delete;
