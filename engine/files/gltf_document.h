@@ -18,7 +18,7 @@ namespace binosplat {
 // One attribute of all splats of a primitive.
 class GltfColumn {
 public:
-    // `components` is the accessor's. Its bytes are within the buffer, which outlives the column.
+    // `components` is the accessor's. Its bytes are within the buffer, which must outlive the column.
     GltfColumn(const GltfBuffer& buffer, std::uint64_t offset, std::uint64_t stride,
                const gltf::Accessor& accessor)
         : buffer_(&buffer), offset_(offset), stride_(stride), accessor_(accessor) {}

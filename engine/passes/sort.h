@@ -20,7 +20,7 @@ class Sort {
 public:
     // kComparisons only where hasNarrowSubgroups.
     explicit Sort(const Context& context, DigitMatch match = DigitMatch::kAuto);
-    // Its two.
+    // Its two kernels.
     [[nodiscard]] KernelTable kernels() const { return {variantOf(count_), variantOf(scatter_)}; }
 
     static bool hasNarrowSubgroups(const Context& context);

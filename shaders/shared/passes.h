@@ -134,7 +134,7 @@ struct ContributePass {
     Uints order;           // the splats' indices in the scene
     FloatColours picture;  // as rasterized
     FloatColours wanted;
-    // in and out: kErrorSums or kContributionSums a splat of the scene, of 64 bits, the lower word first
+    // in and out: kErrorSums or kContributionSums per splat of the scene, of 64 bits, the lower word first
     Uints sums;
     uint eye;
 };

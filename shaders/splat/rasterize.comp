@@ -1,5 +1,5 @@
-// rasterize: blends front to back, with a workgroup per tile. A tile's splats come to shared memory a batch
-// at a time, each with a bit for every cell of 8x8 pixels that it touches; the threads of a cell (one
+// rasterize: blends front to back, with a workgroup per tile. A tile's splats are loaded into shared memory a
+// batch at a time, each with a bit for every cell of 8x8 pixels that it touches; the threads of a cell (one
 // subgroup, if its width allows) then walk only over their own splats. A thread blends several pixels of a
 // column, so that what it reads from shared memory serves all of them.
 //
@@ -94,8 +94,8 @@ void blend(BatchSplat splat, vec2 first_px, float apart, uint max_inverse_depth_
     const vec2 d = first_px - reference.xy;
     const float u = reference.z + plane.x * d.x;
     const float q = depth_form.x + depth_form.y * d.x;
-    // Without a low-pass 1/z may be 0, here and at the reference, and no weight must meet an infinite z, not
-    // even 0.
+    // Without a low-pass 1/z may be 0, here and at the reference, and no weight may be multiplied by an
+    // infinite z, not even 0.
     const bool low_pass = kSplatKind != kDiscs || plane.w > 0;
     const float rho2_x = low_pass ? plane.w * (d.x * d.x) : kNoLowPass;
     const float centre_z = low_pass ? 1 / depth_form.x : 0;

@@ -60,8 +60,8 @@ PreferenceLines readPreferences(const std::vector<SettingsTable>& tables) {
 
 std::string preferencesToml(const PreferenceLines& lines) {
     std::string text =
-        "# What was set on the viewer's panel. It writes this file itself; values of --config come before "
-        "these.\n";
+        "# What was set on the viewer's panel, which writes this file; values in a --config file take "
+        "precedence.\n";
     std::string table;
     for (const auto& [place, value] : lines) {
         if (value.empty()) { continue; }
