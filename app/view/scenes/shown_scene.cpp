@@ -115,7 +115,7 @@ void ShownScene::haveReady(Held& held, const FramesAhead& ahead) {
 }
 
 void ShownScene::takeKernels(StereoFrame& from) {
-    // All frames share them, and none may be on the device with one that is removed.
+    // All frames share the kernels, and none may be on the device with a kernel that is removed.
     for (const Held* const held : {&shown_, &other_}) {
         if (held->frame) { (void)held->frame->finish(); }
         if (held->insets) { (void)held->insets->finish(); }
@@ -212,8 +212,9 @@ std::string ShownScene::makeWay(const ViewState& state) {
     shown_.scene.reset();
     load(std::string(asked_));
     compared_next_ = compared;
-    return fmt::format("{} and {} do not fit into the device's memory together: the first one goes first",
-                       gone_first_, asked_);
+    return fmt::format(
+        "{} and {} do not fit into the device's memory together: the first one is removed first", gone_first_,
+        asked_);
 }
 
 std::string ShownScene::place(ViewState& state) {
