@@ -1,5 +1,5 @@
-// `binosplat compare`: the difference of two pictures, in the same scores as `bench`, or of two paths'
-// frames.
+// `binosplat compare`: the difference between two pictures, with the same scores as `bench`, or between the
+// frames of two paths.
 #include "app/commands.h"
 #include "app/scores/flip.h"
 #include "app/scores/lpips.h"
@@ -37,7 +37,7 @@ std::pair<Image, Image> readBoth(const std::filesystem::path& first, const std::
     return both;
 }
 
-// The pictures that `render --path` leaves in a folder, frame after frame, by eye.
+// The pictures that `render --path` leaves in a folder, frame by frame, for each eye.
 std::map<std::string, std::vector<std::string>> framesIn(const std::filesystem::path& folder) {
     std::map<std::string, std::vector<std::string>> frames;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -48,7 +48,7 @@ std::map<std::string, std::vector<std::string>> framesIn(const std::filesystem::
     return frames;
 }
 
-// Eyes count alike: they have as many frames each.
+// Both eyes count equally, since they have the same number of frames.
 void compareFrames(const std::filesystem::path& first, const std::filesystem::path& second) {
     const auto frames = framesIn(first);
     check(!frames.empty(), "{}: has no frames of a path (frame_000000_...)", first.string());

@@ -1,5 +1,5 @@
-// `binosplat convert`: any scene that can be read, as a PLY, an SPZ or a SOG file, or with levels of detail
-// as a streamed SOG scene.
+// `binosplat convert`: writes any scene that can be read as a PLY, an SPZ or a SOG file, or with levels of
+// detail as a streamed SOG scene.
 #include "app/commands.h"
 #include "app/convert_levels.h"
 #include "app/keep.h"
@@ -31,7 +31,7 @@ void thinOutScene(const ConvertOptions& options, const SceneTarget& target, Scen
         fmt::format("{} of {} splats are kept, those that show most", scene.size(), before));
 }
 
-// Of a file, or of everything beside it in its folder.
+// The size of a file, or of everything in its folder.
 std::uintmax_t bytesWritten(const ConvertOptions& options) {
     if (!options.isStreamed()) { return std::filesystem::file_size(options.out); }
     std::uintmax_t bytes = 0;

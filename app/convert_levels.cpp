@@ -1,4 +1,4 @@
-// First finds out where splats are and what a sample of them looks like, then reads all of them.
+// First finds out where the splats are and what a sample of them looks like, then reads all of them.
 #include "app/convert_levels.h"
 
 #include "app/keep.h"
@@ -20,10 +20,11 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t kFewSplats = 50000;  // no level halves fewer
+constexpr std::uint64_t kFewSplats = 50000;  // fewer are not halved any further
 constexpr std::uint32_t kMostLevels = 10;
 constexpr std::uint64_t kPartSplats = LevelSettings{}.block_splats;
-// A sample that tells as well as all splats where one could stand, and that fills a chunk of the usual size.
+// A sample that says as well as all splats where someone could stand, and that fills a chunk of the usual
+// size.
 constexpr std::uint64_t kSampleSplats = 600'000;
 
 std::uint32_t levelsFor(std::uint64_t splats) {
@@ -32,7 +33,7 @@ std::uint32_t levelsFor(std::uint64_t splats) {
     return levels;
 }
 
-// Of a PLY file that will be read in parts; otherwise 0.
+// The count of a PLY file that will be read in parts; otherwise 0.
 std::uint64_t countInParts(const ConvertOptions& options) {
     std::error_code unreadable;
     if (options.keep || options.load.lod || isBuiltin(options.scene) || isAddress(options.scene) ||
@@ -45,7 +46,7 @@ std::uint64_t countInParts(const ConvertOptions& options) {
     return count > kPartSplats ? count : 0;
 }
 
-// Every so manyeth splat.
+// Every `step`-th splat.
 Scene pickEvery(const Scene& scene, std::uint64_t step) {
     std::vector<std::uint32_t> some;
     for (std::uint64_t i = 0; i < scene.size(); i += step) { some.push_back(static_cast<std::uint32_t>(i)); }

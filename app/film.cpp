@@ -1,4 +1,4 @@
-// Numbered pictures as a film.
+// Makes a film from numbered pictures.
 #include "app/film.h"
 
 #include "engine/error.h"
@@ -78,8 +78,8 @@ FilmTags filmTags(const RenderOptions& options) {
 void writeFilm(const fs::path& folder, const std::string& pattern, const fs::path& film, double rate_hz,
                const FilmTags& tags) {
     const fs::path log = film.parent_path() / ".ffmpeg";
-    // The colours of high-definition television; a quality near what a careful eye can tell apart; colour at
-    // half resolution, as players expect.
+    // The colours of high-definition television; a quality close to what a careful eye can distinguish;
+    // colour at half resolution, as players expect.
     const bool made = runProgram({kFfmpeg,
                                   "-loglevel",
                                   "error",

@@ -92,7 +92,7 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
         ways.push_back(fmt::format("--sh-degree 0: {:.1f} MiB", mebibytes(bytesOf(scene.size(), 0))));
     }
     if (survey.half_radius > 0.0) {
-        // The numbers are rounded, by less than what is added.
+        // The factor makes up for the rounding of the numbers, and more.
         ways.push_back(fmt::format("convert --crop={},{:.4g} keeps half of the splats",
                                    describePlace(survey.middle + scene.origin, survey.half_radius),
                                    1.002 * survey.half_radius));

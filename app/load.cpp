@@ -1,4 +1,4 @@
-// From the options to the loader.
+// Passes options on to the loader.
 #include "app/load.h"
 
 #include "app/terminal/interrupt.h"
@@ -19,7 +19,7 @@ namespace binosplat {
 
 namespace {
 
-// A picture needs what it shows, and hardly anything beside it.
+// A picture needs what it shows, and hardly anything else.
 constexpr double kPictureLookAhead = 0.1;
 
 // The most device memory for the finest level; frames need the rest.
@@ -125,7 +125,7 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     if (!isStreamedScene(source)) { return openMoving(context, source, run, progress); }
     const LoadOptions& load = run.load;
     const bool whole_if_it_fits = purpose == StreamFor::kPictures && load.splat_budget == 0;
-    // Nothing is fetched just to find out whether it fits.
+    // Nothing is fetched merely to find out whether it fits.
     if (whole_if_it_fits && isAddress(source) && run.memory_limit_mib == 0) { return std::nullopt; }
     WebSettings web{webCacheFolder(), load.cache_limit_mib << 20, {}};
     web.fetch.attempts = 2;  // the loader retries by itself

@@ -1,4 +1,4 @@
-// Frames along a recorded path of the head.
+// Renders frames along a recorded path of the head.
 #include "app/render_path.h"
 
 #include "app/axes/staying_axes.h"
@@ -129,7 +129,7 @@ HeadPath readHeadPath(const RenderOptions& options) {
     const std::vector<std::string_view> eyes =
         eyeNames(options.run.stereo.mode == Mode::kMono, options.layout);
     requireNoOthers(options.out, times_s.size(), eyes);
-    // If all frames exist, the last one is rendered again: a film may be missing.
+    // If all frames exist, the last one is rendered again, since a film may be missing.
     const std::size_t first =
         options.resume ? std::min(countFinished(options.out, times_s.size(), eyes), times_s.size() - 1) : 0;
     const double length_s = times_s.back() - times_s.front();

@@ -92,13 +92,13 @@ def draw_side(profile, side):
         svg += f'  <circle cx="{x}" cy="{130 if is_pad else 94}" r="{24 if is_pad else 13}" fill="#9fb6d8" {SHAPE}/>\n'
         what = ": walk, or teleport" if side == 0 else ": turn, rise and sink"
         if press:
-            what += ("; pressed in: the viewpoint before", "; pressed in: the next viewpoint")[side]
+            what += ("; pressed in: the previous viewpoint", "; pressed in: the next viewpoint")[side]
         svg += label(side, *((134, 0, 124) if is_pad else (98, 0, 94)), WORDS[stick] + what)
     if menus[side]:
         is_above = click is not None  # of the pad
         y = 88 if is_above else 122
         svg += f'  <circle cx="{x - inwards * 12}" cy="{y}" r="7" fill="#d8c79f" {SHAPE}/>\n'
-        svg += label(side, 98 if is_above else 134, -inwards * 12, y, WORDS[menus[side]] + ": the panel goes or comes")
+        svg += label(side, 98 if is_above else 134, -inwards * 12, y, WORDS[menus[side]] + ": show or hide the panel")
     if plays[side]:
         svg += f'  <circle cx="{x - inwards * 2}" cy="138" r="7" fill="#c4b5d8" {SHAPE}/>\n'
         svg += label(side, 154, -inwards * 2, 138, WORDS[plays[side]] + ": pause or play; held: the other scene")

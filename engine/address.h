@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-// True for a prefix in small letters; `source` may have it in either case.
+// `prefix` is in lower case; `source` may have it in either case.
 inline bool beginsWith(std::string_view source, std::string_view prefix) {
     return source.size() >= prefix.size() &&
            std::ranges::equal(source.substr(0, prefix.size()), prefix, [](char a, char b) {
@@ -19,13 +19,13 @@ inline bool beginsWith(std::string_view source, std::string_view prefix) {
 
 inline bool isPlainHttp(std::string_view source) { return beginsWith(source, "http://"); }
 
-// http:// or https:// followed by more, in letters of either case. Whether the rest is an address is known
-// when it is requested.
+// http:// or https:// followed by more, in letters of either case. Whether the rest is an address only turns
+// out when it is requested.
 inline bool isAddress(std::string_view source) {
     return isPlainHttp(source) || beginsWith(source, "https://");
 }
 
-// Throws Error for an address that names a user, perhaps with a password; the message leaves both out.
+// Throws Error for an address that names a user, perhaps with a password; the message contains neither.
 inline void requireNoUser(std::string_view source) {
     if (!isAddress(source)) { return; }
     const std::size_t host = source.find("//") + 2;

@@ -1,4 +1,4 @@
-// What the system says of a disk, less what stays free.
+// The free space that the system reports for a disk, less what must stay free.
 #include "engine/disk_room.h"
 
 #include "engine/platform.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kFreeBytes = std::uint64_t{1} << 30, kFreeShare = 20;
 constexpr std::uint64_t kLookBytes = std::uint64_t{16} << 20;
-// On a disk that does not say how large it is: a write to it fails when it is full.
+// For a disk that does not say how large it is; writing to it fails when it is full.
 constexpr std::uint64_t kUntoldBytes = std::uint64_t{1} << 62;
 
 }  // namespace

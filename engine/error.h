@@ -27,7 +27,7 @@ public:
     [[nodiscard]] ExitCode code() const { return code_; }
 
 private:
-    // Names and values in a message come from outside and may hold anything.
+    // Names and values in a message come from outside and may contain anything.
     static std::string oneLine(std::string message) {
         for (char& letter : message) {
             if (static_cast<unsigned char>(letter) < ' ') { letter = ' '; }

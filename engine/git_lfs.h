@@ -1,4 +1,4 @@
-// In place of a large file that was not fetched, Git LFS leaves a text of three lines.
+// In place of a large file that has not been fetched, Git LFS leaves a text of three lines.
 #pragma once
 
 #include "engine/error.h"

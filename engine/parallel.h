@@ -56,7 +56,7 @@ void sortByBucket(std::span<const T> from, std::span<T> to, std::size_t bucket_c
         std::vector<std::size_t>& counts = places[begin / part];
         for (std::size_t i = begin; i < end; ++i) { ++counts[bucket(from[i])]; }
     });
-    // A bucket's elements of an earlier part come before those of a later one.
+    // Within a bucket, elements of an earlier part come before those of a later one.
     std::size_t sum = 0;
     for (std::size_t b = 0; b < bucket_count; ++b) {
         for (auto& counts : places) { sum += std::exchange(counts[b], sum); }

@@ -1,5 +1,5 @@
 // The operating system's services: platform_posix.cpp uses POSIX, platform_windows.cpp uses Windows. Nothing
-// else in engine/, app/ and xr/ includes a header of a system, except the simulated runtime (dlopen).
+// else in engine/, app/ and xr/ includes a system's headers, except the simulated runtime (for dlopen).
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@ struct FileCloser {
 };
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
-// The running program's file; empty if the system does not tell.
+// The running program's file; empty if the system does not say.
 std::filesystem::path programFile();
 
-// A variable of the environment; empty if it is not set. Values are UTF-8.
+// An environment variable; empty if it is not set. Values are UTF-8.
 std::string environment(const char* name);
 void setEnvironment(const char* name, const std::string& value);
 
@@ -31,8 +31,7 @@ std::filesystem::path userHomeFolder();
 // Where paths begin: /, or the drives.
 std::vector<std::filesystem::path> fileSystemRoots();
 
-// Where programs keep what they can make again, and what the user has chosen; empty if the user has no such
-// folder.
+// Where programs keep what they can make again, and the user's choices; empty if the user has no such folder.
 std::filesystem::path userCacheFolder();
 std::filesystem::path userConfigFolder();
 // Where the user's pictures are kept; it need not exist, and is empty if the user has no such place.
@@ -43,7 +42,7 @@ bool isTerminal(std::FILE* stream);
 // The arguments of `main`, as UTF-8.
 std::vector<std::string> programArguments(int count, const char* const* arguments);
 
-// True if it was started by a click, in a console of its own that ends with it.
+// True if the program was started by a click, in a console of its own that closes when it ends.
 bool isStartedByClick();
 // Writes a line to standard error, and also shows it in a window if a click started the program.
 void tellUser(const std::string& line);
@@ -51,8 +50,8 @@ void tellUser(const std::string& line);
 // True if the program has rights over the whole machine, and must not trust its user's environment.
 bool runsAsAdministrator();
 
-// Raises SIGTERM if the system tells the program to end in other ways than by signals: a console that is
-// closed, a user who logs off. The system then waits for the program for some seconds.
+// Raises SIGTERM if the system tells the program to end in other ways than by signals: the console is closed,
+// or the user logs off. The system then waits some seconds for the program.
 void watchForEnd();
 
 // Advice for machines on which Vulkan finds no device.
@@ -60,8 +59,8 @@ extern const char* const kVulkanHint;
 
 // True if there may be a window.
 bool hasDisplay();
-// Where the system keeps fonts of Latin, Greek and Cyrillic letters, and fonts of all others; the best first.
-// They need not exist.
+// Where the system keeps fonts with Latin, Greek and Cyrillic letters, and fonts with all others; the best
+// first. They need not exist.
 std::vector<std::filesystem::path> systemFonts();
 std::vector<std::filesystem::path> furtherSystemFonts();
 
@@ -73,8 +72,8 @@ double threadSeconds();
 // program.
 void letLongWritesFail();
 
-// Runs a program, found as a shell finds it, with its output in the new file `log`; returns true if its exit
-// status was 0. Throws Error if it cannot be started.
+// Runs a program, found as a shell would find it, with its output going to the new file `log`; returns true
+// if its exit status was 0. Throws Error if it cannot be started.
 bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
 
 // Opens a file on a disk for reading, without ever waiting. For anything else (a pipe, a device, a folder)
@@ -99,15 +98,15 @@ struct FileStamp {
     std::int64_t changed_s = 0, changed_ns = 0;
     bool operator==(const FileStamp&) const = default;
 };
-// Empty, with the reason in errno, if the system does not tell.
+// Empty, with the reason in errno, if the system does not say.
 std::optional<FileStamp> stampOf(std::FILE* file);
 
 // Bytes from anywhere in a file, wherever it is being read; fewer at its end. Empty, with the reason in
 // errno, if reading fails. Any thread may call it.
 std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target);
 
-// Advises the system that fresh memory will be used whole: large pages, if available, save a third of the
-// time of filling it.
+// Advises the system that all of this fresh memory will be used: large pages, if available, save a third of
+// the time that it takes to fill it.
 void preferLargePages(void* begin, std::size_t bytes);
 
 }  // namespace binosplat

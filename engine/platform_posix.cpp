@@ -66,7 +66,7 @@ fs::path userHomeFolder() {
 
 std::vector<fs::path> fileSystemRoots() { return {"/"}; }
 
-// By the XDG base directory specification, where relative paths are nobody's.
+// By the XDG base directory specification, which has relative paths ignored.
 static fs::path userFolder(const char* variable, const char* at_home) {
     const fs::path chosen = environment(variable), home = userHomeFolder();
     if (chosen.is_absolute()) { return chosen; }
@@ -77,7 +77,7 @@ fs::path userCacheFolder() { return userFolder("XDG_CACHE_HOME", ".cache"); }
 
 fs::path userConfigFolder() { return userFolder("XDG_CONFIG_HOME", ".config"); }
 
-// By the lines of xdg-user-dirs: XDG_PICTURES_DIR="$HOME/Pictures".
+// From the lines of xdg-user-dirs: XDG_PICTURES_DIR="$HOME/Pictures".
 fs::path userPicturesFolder() {
     const fs::path home = userHomeFolder();
     constexpr std::string_view kBegin = "XDG_PICTURES_DIR=\"", kHome = "$HOME/";
@@ -140,7 +140,7 @@ double threadSeconds() {
 void letLongWritesFail() { std::signal(SIGXFSZ, SIG_IGN); }
 
 bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
-    std::vector<std::string> copies = words;  // posix_spawn takes what could be changed
+    std::vector<std::string> copies = words;  // posix_spawn wants text that may be changed
     std::vector<char*> arguments;
     for (std::string& word : copies) { arguments.push_back(word.data()); }
     arguments.push_back(nullptr);
@@ -159,8 +159,8 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
 }
 
 File openRegularFile(const fs::path& path, std::string& reason) {
-    // Asked before it is opened, since opening a device may do something, and after, since it may be another
-    // by then. O_NONBLOCK: a pipe that nobody writes to would keep us waiting.
+    // Checked before it is opened, since opening a device may have effects, and again afterwards, since it
+    // may be another file by then. O_NONBLOCK: a pipe without a writer would keep us waiting.
     const auto isRegular = [&](int answer, const struct stat& status) {
         if (answer != 0) {
             reason = std::strerror(errno);

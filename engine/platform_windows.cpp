@@ -53,7 +53,7 @@ struct HandleCloser {
 };
 using Handle = std::unique_ptr<HANDLE, HandleCloser>;
 
-// As CommandLineToArgvW takes it apart again: quotes around, backslashes doubled before quotes.
+// As CommandLineToArgvW takes it apart again: quotes around it, backslashes doubled before quotes.
 std::wstring quoted(const std::wstring& word) {
     std::wstring result = L"\"";
     std::size_t backslashes = 0;
@@ -91,7 +91,7 @@ fs::path userHomeFolder() { return userFolder("USERPROFILE"); }
 
 std::vector<fs::path> fileSystemRoots() {
     std::vector<fs::path> drives;
-    const DWORD there = ::GetLogicalDrives();  // a bit each, from A on
+    const DWORD there = ::GetLogicalDrives();  // a bit for each, from A on
     for (int letter = 0; letter < 26; ++letter) {
         if ((there >> letter & 1) != 0) {
             drives.emplace_back(fmt::format("{}:\\", static_cast<char>('A' + letter)));
@@ -272,7 +272,7 @@ std::optional<FileStamp> stampOf(std::FILE* file) {
 }
 
 std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target) {
-    // A handle of its own: reading at a place moves the handle that it is done with.
+    // A handle of its own, since reading at a place moves the handle that is used for it.
     const HANDLE opened =
         ::ReOpenFile(handleOf(file), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, 0);
     if (opened == INVALID_HANDLE_VALUE) {

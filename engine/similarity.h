@@ -1,4 +1,4 @@
-// Moves, turns and changes of size, in float64.
+// Similarities (translation, rotation and uniform scale), in float64.
 #pragma once
 
 #include "engine/geometry.h"

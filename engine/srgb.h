@@ -1,4 +1,4 @@
-// Light and display-encoded values, of 0 and more (IEC 61966-2-1).
+// Conversions between light and display-encoded values, from 0 up (IEC 61966-2-1).
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-// Walks with a bound, and a folder with a random name.
+// Bounded walks through folders, and a folder with a random name.
 #include "engine/temporary_folder.h"
 
 #include "engine/error.h"

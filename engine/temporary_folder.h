@@ -1,4 +1,4 @@
-// Folders that are needed for a while.
+// Folders that are needed only for a while.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace binosplat {
 
-// A folder's entries, each once; empty if it cannot be read. Unlike a bare directory_iterator it always ends:
-// if a path is too long, that of MinGW's library may give the same entry again and again.
+// A folder's entries, each once; empty if it cannot be read. Unlike a plain directory_iterator, it always
+// ends: if a path is too long, MinGW's may return the same entry again and again.
 std::vector<std::filesystem::path> entriesOf(const std::filesystem::path& folder);
 
-// Removes a folder and its content, as far as possible, without following links. Always ends, too.
+// Removes a folder and its content, as far as possible, without following links. This also always ends.
 void removeFolder(const std::filesystem::path& folder) noexcept;
 
 // Made in the system's folder for temporary files, and removed with its owner.

@@ -1,5 +1,5 @@
-// The entry point of every test program. A run without a single case fails, since a suite's name was
-// mistyped. A run that misses the shared scenes and fails nowhere ends with 77, which ctest reports as
+// The entry point of every test program. A run without a single case fails, since a suite's name must have
+// been mistyped. A run that lacks the shared scenes and has no failures ends with 77, which ctest reports as
 // skipped.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include "tests/shared_data.h"

@@ -22,7 +22,7 @@ bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-// The rest of a line that begins with this word.
+// The rest of a line, if it begins with this word.
 std::optional<std::string> behind(const std::string& text, const std::string& word) {
     if (text != word && !text.starts_with(word + " ")) { return std::nullopt; }
     return text.substr(std::min(text.size(), word.size() + 1));

@@ -1,6 +1,6 @@
 // SUITE(name) { facts }: the facts of NAME_test.cpp, which are one line of ctest. Inside, all names of
-// binosplat and binosplat::test are visible. Includes here what suites and their headers share; every header
-// of tests includes this one.
+// binosplat and binosplat::test are visible. What suites and their headers share is included here; every
+// header of tests includes this one.
 #pragma once
 
 #include "engine/error.h"

@@ -1,4 +1,4 @@
-// The functions of the controllers' buttons.
+// What the controllers' buttons do.
 #pragma once
 
 #include "xr/hand.h"
@@ -26,7 +26,7 @@ struct ProfileBindings {
 };
 
 std::span<const ProfileBindings> allProfileBindings();
-// Of the controllers that most people have.
+// Bindings of the controllers that most people have.
 const ProfileBindings& usualBindings();
 
 // What people call an input, by its binding path: "trigger" for "input/trigger/value".

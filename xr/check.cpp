@@ -1,4 +1,4 @@
-// Results as names and exceptions.
+// Turns results into names and exceptions.
 #include "xr/check.h"
 
 #include <openxr/openxr_reflection.h>

@@ -1,4 +1,4 @@
-// Periods between frames.
+// Measures the periods between frames.
 #include "xr/display_pace.h"
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace {
 
 // A longer gap is not the device's fault: the runtime paused, or the machine slept.
 constexpr double kMostLostPeriods = 10.0;
-// Tolerance of isMultiple, as a share, since the error of a measured period grows with the period.
+// Relative tolerance of isMultiple, since the error of a measured period grows with the period.
 constexpr double kJitter = 0.02;
 
 // True if `stated` is `display` or a multiple of it.

@@ -8,9 +8,9 @@ namespace binosplat::xr {
 
 class DisplayPace {
 public:
-    // Call with each result of xrWaitFrame and the period that the runtime states: it may be several of the
-    // display's if the program needs that long (as with Monado); taking it for the display's would settle for
-    // half the rate. `told_period` is the display's period if the runtime reports it
+    // Call with each result of xrWaitFrame and the period that the runtime states. That may be a multiple of
+    // the display's if the program needs so long (as with Monado); to take it for the display's would be to
+    // settle for half the rate. `told_period` is the display's period if the runtime reports it
     // (XR_FB_display_refresh_rate), otherwise 0.
     void begin(XrTime display_time, XrDuration stated_period, XrDuration told_period = 0);
     // Call for each xrEndFrame, with the program's own working time. A frame that shows nothing, or in which

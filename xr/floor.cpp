@@ -1,4 +1,4 @@
-// Looking for the floor.
+// Finds the floor.
 #include "xr/floor.h"
 
 #include "xr/extensions/local_floor.h"

@@ -17,7 +17,7 @@ public:
 
 private:
     const Instance& instance_;
-    OwnedSpace space_;  // on the floor, somewhere; null: the runtime has none
+    OwnedSpace space_;  // somewhere on the floor; null: the runtime has none
 };
 
 }  // namespace binosplat::xr

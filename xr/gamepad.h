@@ -1,4 +1,4 @@
-// A gamepad, beside the hands or in their place: it has no ray, so the panel is for hands.
+// A gamepad, along with the hands or in their place. It has no ray, so the panel needs hands.
 #pragma once
 
 #include "xr/actions.h"
@@ -11,14 +11,13 @@ namespace binosplat::xr {
 
 class Gamepad {
 public:
-    // Makes its actions. bind() comes before they are attached: a runtime that knows no gamepad leaves it at
-    // rest.
+    // Makes its actions. Call bind() before they are attached; with a runtime that does not know gamepads, it
+    // stays at rest.
     explicit Gamepad(const Actions& actions);
     void bind(const Instance& instance) const;
 
-    // Adds what its sticks and buttons do to what the hands do: each stick to the hand of its side, the
-    // shoulders as sticks that are pressed in, the buttons for the panel and for moving scenes to the right
-    // hand's.
+    // Adds what its sticks and buttons do to what the hands do: each stick to the hand on its side, the
+    // shoulders as pressed sticks, the buttons for the panel and for moving scenes to the right hand's.
     void addTo(std::array<Hand, 2>& hands);
     // Buttons that are pressed count once they have been released.
     void forget();

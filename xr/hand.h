@@ -1,4 +1,4 @@
-// What a hand does.
+// What a hand is doing.
 #pragma once
 
 #include "engine/geometry.h"
@@ -20,8 +20,9 @@ struct Hand {
     bool stick_presses = false;  // the stick is pressed in; never a pad
 };
 
-// Tells if a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not read
-// for a while may have been pressed for something else: it counts once it has been seen released.
+// Tells whether a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not
+// read for a while may have been pressed for something else, so it counts only once it has been seen
+// released.
 class Hold {
 public:
     // Empty: unknown.

@@ -1,4 +1,4 @@
-// Copies between images on their way to a headset's runtime or a window: outside of passes, in a caller's
+// Copies between images on their way to a headset's runtime or a window: outside any pass, in a caller's
 // commands.
 #pragma once
 

@@ -16,7 +16,7 @@ namespace binosplat::xr {
 struct LayerEye {
     EyeView view;
     const Swapchain* colour = nullptr;
-    const Swapchain* depth = nullptr;  // near_m / depth, 0 where there is nothing
+    const Swapchain* depth = nullptr;  // near_m / depth; 0 where there is nothing
     double near_m = 0.0;
     glm::uvec2 part_px{0, 0};  // of the images, from their top left corner
 };
@@ -40,15 +40,15 @@ public:
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
-    // If `see_through`, the room shows as far as the pictures' alpha lets it; their colours are premultiplied
-    // by alpha.
+    // If `see_through`, the room is visible as far as the pictures' alpha lets it through; their colours are
+    // premultiplied by alpha.
     void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) { addViews(eyes, see_through); }
     // The same in a session with insets, which come after the eyes.
     void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) {
         addViews(eyes_and_insets, see_through);
     }
     // A panel centred at `room_from_panel`, facing along its -z, size_m wide and high. Its picture is blended
-    // over what lies behind; its colours are premultiplied by alpha.
+    // over what is behind it; its colours are premultiplied by alpha.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
     void addQuad(const LayerQuad& quad);
     // All quads that were added, not counting panels.

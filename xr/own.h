@@ -1,4 +1,4 @@
-// OpenXR's handles, each with one owner that destroys it.
+// OpenXR's handles, each with an owner that destroys it.
 #pragma once
 
 #include <openxr/openxr.h>

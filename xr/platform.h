@@ -1,4 +1,4 @@
-// OpenXR with its Vulkan part.
+// Includes OpenXR with its Vulkan part.
 #pragma once
 
 #include <vulkan/vulkan.h>

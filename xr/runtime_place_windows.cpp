@@ -1,5 +1,5 @@
-// XR_RUNTIME_JSON, unless the program runs as administrator, or the registry, where a runtime's own settings
-// put it.
+// XR_RUNTIME_JSON, unless the program runs as administrator, or else the registry, where the runtime's own
+// settings put it.
 #include "xr/runtime_place.h"
 
 #include "engine/platform.h"
@@ -14,7 +14,7 @@ std::string runtimeHint() {
         return "start the program without administrator rights, or set that value to " +
                environment("XR_RUNTIME_JSON");
     }
-    // Windows Mixed Reality's own runtime has no Vulkan.
+    // Windows Mixed Reality's own runtime does not support Vulkan.
     return "choose one: SteamVR, Settings > OpenXR > Set SteamVR as OpenXR runtime (also for Windows Mixed "
            "Reality, whose own has no "
            "Vulkan); Meta Quest Link, Settings > General > OpenXR Runtime; or try `binosplat view SCENE "

@@ -30,7 +30,7 @@ enum class FrameOutcome {
 
 class Session {
 public:
-    // `context` must have been opened with deviceMaker(instance); both outlive the session. `views` is
+    // `context` must have been opened with deviceMaker(instance); both must outlive the session. `views` is
     // kStereo, or kStereoWithInset if findInset() found one.
     Session(const Instance& instance, const Context& context, XrViewConfigurationType views = kStereo);
     Session(const Session&) = delete;
@@ -70,9 +70,8 @@ public:
     [[nodiscard]] std::vector<double> refreshRates() const { return refresh_rate_.list(); }
     std::string askForRate(double rate_hz) { return refresh_rate_.request(rate_hz); }
 
-    // See Spaces and Floor; for the open frame.
-    // The room is also settled once somebody begins to wear the headset, unless the head still is where the
-    // room begins.
+    // See Spaces and Floor; for the open frame. The room is also settled once somebody begins to wear the
+    // headset, unless the head is still where the room begins.
     bool settle(bool demanded);
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() {
         return spaces_.locateEyes(displayTime());

@@ -1,4 +1,4 @@
-// Where the head is, and the room around it.
+// Finds where the head is, and places the room around it.
 #include "xr/spaces.h"
 
 #include "xr/convert.h"
@@ -97,7 +97,7 @@ bool Spaces::settle(XrTime time, bool demanded) {
     const bool moved = recentred_from_ && time >= *recentred_from_;
     if (turn_settled_ && place_settled_ && !moved && !demanded) { return false; }
     Located located = locate(local_.get(), time);
-    // A headset that never knows its position still turns.
+    // A headset that never knows its position can still turn.
     const bool first = !turn_settled_ || (!place_settled_ && located.place_known);
     if (!located.turn_known || (!first && !moved && !demanded)) { return false; }
     if (!located.place_known) {

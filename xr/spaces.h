@@ -24,11 +24,11 @@ inline constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 // are arbitrary.
 class Spaces {
 public:
-    // `moves_insets`: those of such a session follow the gaze.
+    // `moves_insets`: the insets of such a session follow the gaze.
     Spaces(XrSession session, XrViewConfigurationType views, bool moves_insets);
 
-    // Places the room for `time` and after, the first time that the head's pose is known, again when the
-    // runtime recentred its space, and when `demanded`. Returns true if it did.
+    // Places the room for `time` and later: the first time that the head's pose is known, again when the
+    // runtime has recentred its space, and when `demanded`. Returns true if it did.
     bool settle(XrTime time, bool demanded);
     // The runtime recentres its space at `time`.
     void recentreFrom(XrTime time) { recentred_from_ = time; }
@@ -36,14 +36,14 @@ public:
     // unknown, the last known one is used.
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes(XrTime time);
 
-    // The middle between the eyes, if it is known in full.
+    // The midpoint between the eyes, if its whole pose is known.
     [[nodiscard]] std::optional<Pose> locateHead(XrTime time) const;
 
     // The angles of both insets as of the last locateEyes(), in a session with insets; their poses are the
     // eyes'.
     [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return insets_; }
 
-    // LOCAL until it is settled.
+    // LOCAL until the room is settled.
     [[nodiscard]] XrSpace room() const { return room_.get(); }
     // Moves with the head.
     [[nodiscard]] XrSpace head() const { return head_.get(); }

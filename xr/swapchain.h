@@ -27,8 +27,8 @@ public:
     Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format,
               ImageUse use);
 
-    // Lends an image and waits until it is free; to be released before the frame ends. Throws Lost, or Error
-    // if it is not free within ten seconds.
+    // Lends an image and waits until it is free; it must be released before the frame ends. Throws Lost, or
+    // Error if it is not free within ten seconds.
     vk::Image acquire();
     void release();
 

@@ -1,4 +1,4 @@
-// Presence, or signs of it.
+// Tells whether the headset is worn, by its presence sensor or by movement.
 #include "xr/wearing.h"
 
 #include <algorithm>
@@ -8,10 +8,10 @@ namespace binosplat::xr {
 
 namespace {
 
-// Even a head that looks at one thing moves this far in a second or two; a headset on a desk does not, within
-// its tracking error.
+// Even the head of someone who looks at one thing moves this far in a second or two; a headset on a desk does
+// not, apart from tracking errors.
 constexpr double kMovedMetres = 0.02, kMovedRadians = 0.05;
-// A headset that has been still for this long is not yet worn when it moves, but this much later.
+// When a headset that has been still for this long moves, it counts as worn only this much later.
 constexpr double kDeskSeconds = 3.0, kLiftSeconds = 2.0;
 
 double angleBetween(const glm::dquat& a, const glm::dquat& b) {

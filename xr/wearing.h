@@ -9,8 +9,8 @@ namespace binosplat::xr {
 
 class Wearing {
 public:
-    // How far a head must be from the room's origin, or turned from its z: farther than a wearer would not
-    // notice.
+    // How far a head must be from the room's origin, or turned from its z: farther than a wearer would fail
+    // to notice.
     static constexpr double kElsewhereMetres = 0.1, kElsewhereRadians = 0.17;
 
     // What the runtime says, if it can tell.
@@ -19,8 +19,8 @@ public:
     void forgetPlace() { first_.reset(); }
     [[nodiscard]] bool hasBegun() const { return has_begun_; }
     // Call once a frame, with the head's pose in the room. True once: when the program has the input and
-    // somebody wears the headset. If the runtime cannot tell, movement shows a head: at once, or a while
-    // after a headset has been still.
+    // somebody wears the headset. If the runtime cannot tell, movement shows that there is a head: at once,
+    // or a while after a headset has been still.
     bool begins(bool is_focused, const Pose& room_from_head, double step_seconds);
 
     [[nodiscard]] static bool isElsewhere(const Pose& room_from_head);

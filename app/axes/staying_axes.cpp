@@ -13,20 +13,21 @@ namespace {
 
 // Wider pictures would be mostly border.
 constexpr double kMostRad = 1.4;
-// A turning head goes on for about this many frames; the axes move ahead by at most this share of the margin.
+// A turning head goes on turning for about this many frames; the axes move ahead by at most this share of the
+// margin.
 constexpr double kFramesAhead = 20.0, kMostAhead = 0.9;
-// However wide whole tiles are: earlier axes that are farther off are of no use.
+// However wide whole tiles are, earlier axes that are farther off than this are not used.
 constexpr double kMostMargins = 1.5;
-// So that some tiles are hidden in every frame: a frame in which hiding begins or ends is waited for.
+// So that some tiles are hidden in every frame, since a frame in which hiding begins or ends is waited for.
 constexpr std::uint32_t kLeastBorderTiles = 2;
-// The compositor's filter reads pixels beside the view's edge, and the warp some more beyond.
+// The compositor's filter reads pixels beyond the view's edge, and the warp reads some more.
 constexpr double kBesidePx = 4.0;
-// Where tiles coincide with the view's. What the lens hides has a margin of its own for the filter.
+// If tiles coincide with the view's. What the lens hides has its own margin for the filter.
 constexpr double kRoundingPx = 0.02;
 // Angles may jitter by the rounding of their float32.
 constexpr double kSameShare = 1e-4;
 
-// From pixels of one eye to those of another at the same place; only what is in front of the latter.
+// Maps pixels of one eye to those of another at the same place; only what is in front of the latter.
 struct Homography {
     glm::dmat3 matrix;
 
@@ -218,7 +219,7 @@ bool StayingAxes::isFarFrom(const Eye& view) const {
     return std::abs(alike) < std::cos(0.5 * kMostMargins * margin_rad_);
 }
 
-// The views go on turning as they did since the last frame.
+// The views are assumed to go on turning as they have since the last frame.
 void StayingAxes::moveTo(std::span<const Eye> views) {
     const auto axesOf = [](const Eye& eye) { return eye.world_from_camera.orientation; };
     const glm::dquat turn = views_.size() == views.size()

@@ -16,7 +16,7 @@ namespace binosplat {
 inline constexpr double kAxesMarginDegrees = 2.0;
 
 // A picture from the same place that also covers what the view would show if it turned this far to any side,
-// with the same pixels and whole tiles more at each edge.
+// with the same pixels and additional whole tiles at each edge.
 Eye coverOf(const Eye& view, double margin_rad);
 // True if the picture, from the same place, shows all of the view.
 bool covers(const Eye& picture, const Eye& view);

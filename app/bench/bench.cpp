@@ -21,7 +21,7 @@ namespace binosplat {
 namespace {
 
 std::vector<std::uint64_t> countsOf(const std::string& source, const BenchSeries& series) {
-    // A file's splat count is fixed: it is measured once for all counts of a series.
+    // A file's splat count is fixed, so it is measured only once for all counts of a series.
     return isBuiltin(source) ? series.splats : std::vector<std::uint64_t>{0};
 }
 
@@ -38,7 +38,7 @@ std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
     return points;
 }
 
-// One scene with one splat count, drawn in one way: every size, headset and view.
+// One scene with one splat count, drawn in one way: with every size, headset and view.
 void benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series,
                 const std::vector<BenchView>& views, const BenchScene& loaded,
                 std::vector<BenchResult>& results, const std::function<void()>& next) {

@@ -15,13 +15,13 @@ void requireScenes(const BenchPlan& plan);
 // motion.csv, .json and .svg.
 void benchMotion(const BenchOptions& options, const BenchPlan& plan);
 
-// `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes
-// photos.csv and .json.
+// `bench --photos`: compares the affiliated eye, placed where a photograph was taken, with the photograph.
+// Writes photos.csv and .json.
 void benchPhotos(const BenchOptions& options, const BenchPlan& plan);
 
-// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and
-// popping while the head turns; only on the CPU, for the plan's scenes, views and first size. Writes
-// orders.csv.
+// `bench --orders`: compares pictures with each order of splats with one in which every pixel has its own
+// order, and measures popping while the head turns; only on the CPU, for the plan's scenes, views and first
+// size. Writes orders.csv.
 void benchOrders(const BenchOptions& options, const BenchPlan& plan);
 
 }  // namespace binosplat

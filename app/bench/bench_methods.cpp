@@ -21,7 +21,7 @@ struct Combination {
     Settings settings;
 };
 
-// Every combination so far with every entry of one more key.
+// Combines every combination so far with every entry of one more key.
 std::vector<Combination> extend(const std::vector<Combination>& combinations, const std::string& key,
                                 const Setting& setting) {
     std::vector<Combination> extended;

@@ -1,4 +1,4 @@
-// The methods that a bench compares: each a mode with settings of its own, in pictures of full or lower
+// The methods that a bench compares: each is a mode with its own settings, in pictures of full or lower
 // resolution.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace binosplat {
 struct BenchMethod {
     std::string name;
     StereoOptions stereo;
-    // Share of width and height; scores are those of the pictures scaled up, as a compositor does.
+    // Share of width and height; pictures are scaled up before they are scored, as a compositor does.
     double resolution = 1.0;
     // The time that a governor keeps frames of `temporal` within; 0: no governor. Unset: as --frame-time
     // says.

@@ -42,7 +42,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
         return cameras;
     };
     if (live != nullptr) { settle(*live, start.eyes); }
-    // A GPU runs at full speed only while it is kept busy: its times are from a run without pictures.
+    // A GPU runs at full speed only while it is kept busy, so its times come from a run without pictures.
     std::vector<std::vector<FrameResult>> timed;
     std::optional<MotionPoint> timed_point;
     if (!context.isSoftware()) {

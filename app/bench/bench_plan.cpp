@@ -105,7 +105,7 @@ BenchView readView(const SettingsTable& table, const RunOptions& base) {
     return view;
 }
 
-// The two methods that all others are compared with come first, and once.
+// The two methods that all others are compared with come first, and only once.
 void addReferences(BenchPlan& plan, const RunOptions& run) {
     std::vector<BenchMethod> methods;
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {

@@ -18,8 +18,8 @@
 
 namespace binosplat {
 
-// Renders methods, each in buffers shared only with methods of the same needs: none pays for another's
-// allocations.
+// Renders methods, each in buffers shared only with methods that have the same needs, so that none pays for
+// another's allocations.
 class MethodFrames {
 public:
     MethodFrames(const Context& context, const GpuScene& scene) : context_(context), scene_(scene) {}
@@ -66,9 +66,9 @@ struct BenchPoint {
     LiveScene* live = nullptr;  // if it is streamed or moves; then `scene` is a sample of it
 };
 
-// Renders `round` until the device is as fast as it gets: `rounds` times, and for two seconds on a GPU, whose
-// clocks fall while it waits for scenes to load or pictures to be compared (by a factor of four, NVIDIA H100)
-// and take more than half a second to rise again.
+// Renders `round` until the device is at full speed: `rounds` times, and for two seconds on a GPU, whose
+// clock rate falls while it waits for scenes to load or pictures to be compared (by a factor of four on an
+// NVIDIA H100) and takes more than half a second to rise again.
 void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round);
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan);

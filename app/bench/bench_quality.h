@@ -1,4 +1,5 @@
-// How far the affiliated eye's picture is from its own full render: over all pixels, and by their origin.
+// How much the affiliated eye's picture differs from its own full render: over all pixels, and by their
+// origin.
 #pragma once
 
 #include "app/scores/lpips.h"
@@ -11,14 +12,13 @@
 
 namespace binosplat {
 
-// Pixels of one origin: "all", "reprojected", "interpolated" (gaps and holes) or "patched" (tiles rendered
-// again).
+// Pixels of one origin: "all", "reprojected", "interpolated" (gaps and holes) or "patched" (rendered tiles).
 struct OriginScores {
     std::string origin;
     std::uint64_t pixels = 0;
     double mean_square = 0.0;  // of R, G and B, as encoded, 0 to 1
     std::optional<double> ssim, flip;
-    std::optional<double> lpips;  // only of all pixels: the network sees the whole picture
+    std::optional<double> lpips;  // only over all pixels: the network sees the whole picture
 
     // Infinity if the pictures are equal.
     [[nodiscard]] double psnrDb() const;
@@ -30,8 +30,8 @@ struct QualityOptions {
     const Lpips* lpips = nullptr;  // null: not wanted
 };
 
-// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. Scores not
-// defined for pictures of this size or angle (FLIP, LPIPS) are left out.
+// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. Scores
+// that are not defined for pictures of this size or angle (FLIP, LPIPS) are omitted.
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture,
                                          std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes,
@@ -40,12 +40,13 @@ std::vector<OriginScores> measureQuality(const Image& full, const Image& picture
 // The part of the error that is visible to an eye with this gaze.
 struct SeenScores {
     double mean_square = 0.0;
-    double noticed = 0.0;  // share of the tiles with an error whose visible part is kLeastSeenError or more
+    double noticed =
+        0.0;  // among tiles with an error, the share in which its visible part is at least kLeastSeenError
 
     [[nodiscard]] double psnrDb() const;
 };
 
-// `shares`: by tile, how much of its error's square the eye sees, see reference::findSharesThere.
+// `shares`: for each tile, how much of its squared error the eye sees; see reference::findSharesThere.
 SeenScores measureSeen(const Image& full, const Image& picture, std::span<const double> shares);
 
 // Against a photograph, as evaluations of 3DGS and 2DGS do: the picture clamped to 0 to 1, zeros beyond the

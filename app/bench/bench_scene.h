@@ -21,7 +21,7 @@ public:
         whole_.emplace(context, scene_);
     }
 
-    // All of it on the host, its coarsest level, or its first frame.
+    // The whole scene on the host, its coarsest level, or its first frame.
     [[nodiscard]] const Scene& scene() const { return opened_ ? opened_->sample : scene_; }
     [[nodiscard]] const GpuScene& gpuScene() const { return whole_ ? *whole_ : opened_->live->scene(); }
     [[nodiscard]] bool moves() const { return opened_ && opened_->moving != nullptr; }

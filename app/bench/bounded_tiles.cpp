@@ -1,4 +1,4 @@
-// Counts the tiles that were kept although they are far under the bound.
+// Counts the tiles that were not rendered although they are far under the bound.
 #include "app/bench/bounded_tiles.h"
 
 #include "engine/passes/frame_buffers.h"

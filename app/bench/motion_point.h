@@ -16,14 +16,14 @@ namespace binosplat {
 
 class MotionPoint {
 public:
-    // `frame_ms`: what a frame of `temporal` may take, or 0; a governor then chooses its resolution and
-    // bound.
+    // `frame_ms`: how long a frame of `temporal` may take, or 0; if given, a governor chooses its resolution
+    // and bound.
     MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan,
                 std::string name, double frame_ms = 0.0);
-    // Repeats what `timed` chose for the same poses, however long frames take now.
+    // Repeats the choices of `timed` for the same poses, however long frames take now.
     void chooseAs(const MotionPoint& timed);
 
-    // Renders a frame of each method, so that none is the first.
+    // Renders a frame of each method, so that none is timed in its first frame.
     void warm(const Cameras& cameras);
     // Renders a frame of each method, only to measure it.
     std::vector<FrameResult> time(const Cameras& cameras);

@@ -11,7 +11,7 @@ namespace {
 
 static_assert(Sight::kNoTile == LensView::kNowhere);
 
-// By tiles of the lenses' grid.
+// For each tile of the lenses' grid.
 std::vector<double> sharesOf(const LensView& lens, int side, const glm::dvec3& lens_centre) {
     constexpr auto tile = static_cast<double>(gpu::kTileSize);
     const glm::uvec2 tiles = lens.sizePx() / gpu::kTileSize;

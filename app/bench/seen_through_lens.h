@@ -1,5 +1,5 @@
-// What a named headset's wearer notices of two eyes' pictures: through its lenses, where an eye sees less and
-// less towards their borders.
+// What the wearer of a named headset notices in both eyes' pictures through its lenses, when the eye sees
+// less and less towards their edges.
 #pragma once
 
 #include "app/options/camera_options.h"
@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-// Eyes turn this far from a lens's centre before the head follows: within this angle they see everything.
+// Eyes turn this far from a lens's centre before the head follows, so within this angle they see everything.
 inline constexpr double kEyesTurn_deg = 15.0;
 
 class SeenThroughLens {
@@ -19,9 +19,9 @@ public:
 
     // Both eyes' pictures as shown, of the cameras' size, through the lenses.
     [[nodiscard]] std::array<Image, 2> show(const std::array<Image, 2>& pictures) const;
-    // For pictures from show(). An eye is assumed to resolve as `price` and `tile_ranges` have it
-    // (reference::seenShare), and to look anywhere within kEyesTurn_deg of its lens's centre, whatever
-    // foveation a method has.
+    // For pictures from show(). An eye is assumed to resolve as much as in `price` and `tile_ranges`
+    // (reference::seenShare), and to look anywhere within kEyesTurn_deg of its lens's centre, whatever the
+    // method's foveation.
     [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures,
                                      const std::array<Image, 2>& full) const {
         return findSeenErrors(pictures, full, sights_);

@@ -1,4 +1,4 @@
-// The commands: their words, their options, and reading both.
+// The commands: their words and options, and how both are read.
 #include "app/command_line/commands_table.h"
 
 #include "app/command_line/option_documents.h"
@@ -44,8 +44,8 @@ void addOwnCameras(Settings& line, const Settings& config) {
     if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
 }
 
-// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that
-// are in `foreign` are not read but go to `rest`.
+// Options from the command line, to which cameras may be added, then the config, then `standard`. Tables of
+// the config that are in `foreign` are not read but go to `rest`.
 RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const RunOptions& standard,
                    std::vector<SettingsTable>* rest = nullptr) {
     const std::string config = wordOf(line, kConfig.text.key);
@@ -132,7 +132,7 @@ void requireBenchKind(const BenchOptions& bench) {
         if (wrong) { throw Error(ExitCode::kUsage, message); }
     };
     refuse(!bench.motion_file.empty() && !bench.photos_folder.empty(),
-           "--motion and --photos contradict each other, must be one of them");
+           "--motion and --photos contradict each other: give one of them");
     refuse(!bench.photos_folder.empty() && !cameras, "--photos is given without --cameras");
     refuse(!bench.photos_folder.empty() && bench.run.camera.size_px.has_value(),
            "--photos and --size contradict each other: pictures have the photographs' size");
@@ -165,7 +165,7 @@ Options makeBench(const Settings& given) {
     return bench;
 }
 
-// What was set on the panel in earlier runs. A file that is of no use keeps nobody out.
+// What was set on the panel in earlier runs. A broken file must not keep the viewer from starting.
 void readOwnPreferences(RunOptions& standard, std::vector<SettingsTable>& view) {
     const std::filesystem::path file = preferencesFile();
     std::error_code ignored;
@@ -200,7 +200,7 @@ Options makeView(const Settings& given) {
     RunOptions standard = withHistory();
     standard.stereo.half_periphery = true;
     standard.stereo.axes = Axes::kStay;
-    // Simulated runs are the same everywhere.
+    // Simulated runs must be the same everywhere.
     if (!view.simulate) { readOwnPreferences(standard, view.tables); }
     view.run = readRun(line, {"view"}, standard, &view.tables);
     return readRows(viewRows(), line, view);
@@ -257,11 +257,9 @@ Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(l
 
 constexpr const char* kCompareFooter =
     "Prints one `name value` per line. psnr: dB over the stored R, G, B values; inf if the pictures are "
-    "equal. ssim: 1 if they\n"
-    "are equal. flip and lpips: 0 if they are equal. The last three clamp values to 0 to 1. Of the frames of "
-    "two paths: pictures\n"
-    "(how many), psnr, psnr_least (of the worst one), and change: how much A changes from frame to frame, "
-    "over how much B does.";
+    "equal.\nssim: 1 if they are equal. flip and lpips: 0 if they are equal. The last three clamp values to "
+    "between 0 and 1.\nFor the frames of two paths: pictures (how many), psnr, psnr_least (of the worst "
+    "one), and change: how much\nA changes from frame to frame, divided by how much B does.";
 
 }  // namespace
 
@@ -270,7 +268,7 @@ std::span<const Command> commands() {
     static const std::vector<Command> rows{
         {"render",
          kRender,
-         "Render one frame, or one for each pose of a path, and write the pictures",
+         "Render one frame, or one for each pose of a path, and save the pictures",
          {scene},
          with(describe(renderRows()), kConfig),
          makeRender},
@@ -289,7 +287,7 @@ std::span<const Command> commands() {
            /*required*/ false}},
          with(describe(viewRows()), kConfig),
          makeView},
-        {"info", kInfo, "Print what a scene holds", {scene}, {}, makeInfo},
+        {"info", kInfo, "Print what a scene contains", {scene}, {}, makeInfo},
         {"scene",
          kScene,
          "Write a built-in scene as a 2DGS PLY file",
@@ -299,16 +297,17 @@ std::span<const Command> commands() {
         {"convert",
          kConvert,
          "Write a scene as a PLY, an SPZ or a SOG file, or with levels of detail as streamed SOG",
-         {scene, {"OUT", "file to write, by its name: .ply, .spz, .sog, or FOLDER/lod-meta.json"}},
+         {scene,
+          {"OUT", "file to write; its name chooses the format: .ply, .spz, .sog, or FOLDER/lod-meta.json"}},
          describe(convertRows()),
          makeConvert},
         {"compare",
          kCompare,
          "Compare two pictures, or the frames of two paths: PSNR, SSIM, FLIP and LPIPS",
          {{"A",
-           "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two), or the folder of render "
-           "--path"},
-          {"B", "picture of the same size, or folder of the same frames"}},
+           "picture: PNG, EXR, PFM or PPM (without OpenImageIO only the last two), or a folder of frames "
+           "from render --path"},
+          {"B", "picture of the same size, or folder of frames with the same names"}},
          describe(compareRows()),
          makeCompare,
          kCompareFooter},

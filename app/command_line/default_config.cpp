@@ -69,12 +69,11 @@ std::string writeRow(const OptionRow<Owner>& row) {
 std::string defaultConfig() {
     std::string text =
         "# Every key of a config and its default. `binosplat render SCENE --out DIR --config "
-        "configs/default.toml` is the same as no "
-        "config;\n# the command line wins over a config. Keys are the options' names; '_' may stand for '-'. "
-        "A key may also stand at the "
-        "top, outside\n# of its table. Commented keys have no default of their own, or one for each command. "
-        "Files are relative to this "
-        "one. Made from the\n# program's own table (`binosplat document config`).\n";
+        "configs/default.toml` does the\n# same as without a config. The command line wins over a config. "
+        "Keys are the options' names, in which '_' may be\n# written for '-'. A key may also be at the top, "
+        "outside its table. Keys in comments have no default, or a\n# different one for each command. File "
+        "names are relative to this file. Made from the program's own table\n# (`binosplat document "
+        "config`).\n";
     const char* table = "";
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(table) != row.text.table) {
@@ -84,15 +83,16 @@ std::string defaultConfig() {
         text += writeRow(row);
     }
     text += '\n';
-    text += writeLine("[view]", "of `view` alone; its panel saves and loads these");
+    text += writeLine("[view]", "for `view` only; its panel saves and loads these");
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { text += writeRow(row); }
-    text += writeLine("# scene-position = [0.0, 0.0, 0.0]",
-                      "where the wearer's room begins in the scene, with the next two or not at all");
+    text +=
+        writeLine("# scene-position = [0.0, 0.0, 0.0]",
+                  "origin of the wearer's room in the scene; give this and the next two, or none of them");
     text += writeLine("# scene-orientation = [1.0, 0.0, 0.0, 0.0]",
-                      "how it is turned: w, x, y, z of a quaternion");
-    text += writeLine(
-        "# units-per-metre = 1.0",
-        "scene units in a metre of the room; absent: [camera] and metres-per-unit say where and how large");
+                      "how the room is turned: w, x, y, z of a quaternion");
+    text += writeLine("# units-per-metre = 1.0",
+                      "scene units in a metre of the room; without these, [camera] and metres-per-unit say "
+                      "where and how large");
     return text;
 }
 

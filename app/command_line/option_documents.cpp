@@ -1,4 +1,4 @@
-// The list of commands and options for readers and shells.
+// Prints the list of commands and options for readers and shells.
 #include "app/command_line/option_documents.h"
 
 #include "app/command_line/commands_table.h"
@@ -68,11 +68,9 @@ std::string markdown() {
         }
     }
     text +=
-        "\n## Shared options\n\nThe last column says which commands have an option. It may also stand in a "
-        "config file (`--config`), in "
-        "the table that is\n"
-        "named here or at the top, without its dashes; the command line wins. `[[methods]]`: it may also "
-        "stand in a bench's methods.\n";
+        "\n## Shared options\n\nThe last column says which commands have the option. An option may also be "
+        "set in a config file (`--config`):\nwithout its dashes, either at the top or in the table that is "
+        "named here. The command line wins.\n`[[methods]]`: a bench's methods may set it, too.\n";
     const char* table = "";
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(table) != row.text.table) {
@@ -83,11 +81,9 @@ std::string markdown() {
         text += markdownRow(describe(row), commandsWith(row.text));
     }
     text +=
-        "\n### [view]\n\nConfig files alone, and what the panel saves; beside these, `scene-position`, "
-        "`scene-orientation` (w, x, y, z) "
-        "and `units-per-metre`, all\nthree or none, and `metres-per-unit`, the measure of a scene that was "
-        "saved.\n\n| key | | range | "
-        "default |\n|---|---|---|---|\n";
+        "\n### [view]\n\nOnly for config files; the panel saves these keys. It also saves where the scene "
+        "is: `scene-position`,\n`scene-orientation` (w, x, y, z) and `units-per-metre`, all three or none, "
+        "and the scene's scale,\n`metres-per-unit`.\n\n| key | | range | default |\n|---|---|---|---|\n";
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) {
         const OptionDescription key = describe(row);
         text += fmt::format("| `{}` | {} | {} | {} |\n", key.text.key, key.text.help, key.range,
@@ -98,12 +94,13 @@ std::string markdown() {
 
 // docs/render.md explains these in detail.
 constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
-    {"BINOSPLAT_DATA", "folder that holds configs/headsets"},
-    {"BINOSPLAT_PIPELINE_CACHE", "folder for what the driver compiles; 0: none"},
+    {"BINOSPLAT_DATA", "folder that contains configs/headsets"},
+    {"BINOSPLAT_PIPELINE_CACHE", "folder in which to keep what the driver has compiled; 0: none"},
     {"BINOSPLAT_FONT", "TrueType font of the viewer's panel"},
-    {"BINOSPLAT_SHADERS", "folder of shader sources, which the viewer's panel then reloads"},
+    {"BINOSPLAT_SHADERS", "folder of shader sources that the viewer's panel can reload"},
     {"BINOSPLAT_VISIBILITY_MASK", "0: the viewer also draws what the headset's lenses hide"},
-    {"BINOSPLAT_VALIDATION", "1: with Vulkan's validation layers, whose messages fail the command"},
+    {"BINOSPLAT_VALIDATION",
+     "1: run with Vulkan's validation layers; any message of theirs makes the command fail"},
 }};
 
 // A dot or an apostrophe at the start of a line would be a request, and a bare dash a hyphen that searches do

@@ -146,7 +146,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     app.allow_windows_style_options(false);  // a path may begin with a slash there, too
     app.require_subcommand(1);
     app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));
-    std::deque<CommandLine> lines;  // CLI11 keeps addresses within
+    std::deque<CommandLine> lines;  // CLI11 keeps addresses of its elements
     for (const Command& command : commands()) { addCommand(app, lines.emplace_back(), command); }
     try {
         app.parse(readableArguments(words));

@@ -20,7 +20,7 @@ std::string escaped(std::string_view text, std::string_view special) {
     return made;
 }
 
-// In single quotes, which zsh ends for a quote within.
+// In single quotes, which must be interrupted for a quote within.
 std::string quotedForZsh(std::string_view text) {
     std::string made = "'";
     for (const char letter : text) { made += letter == '\'' ? std::string("'\\''") : std::string(1, letter); }

@@ -1,4 +1,4 @@
-// A line with a handle.
+// Draws a line with a handle between two scenes.
 #include "app/desktop/curtain.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void Curtain::compose(Commands& commands, vk::Image window, const std::vector<Ey
                 const glm::ivec2 from = glm::max(middle - size_px / 2, low),
                                  to = glm::min(middle - size_px / 2 + size_px, high);
                 if (glm::any(glm::greaterThanEqual(from, to))) { continue; }
-                // One after the other: what comes later lies above.
+                // One after another: later ones are on top.
                 changeLayout(commands, window, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);
                 blitInto(commands, ink, {1, 1}, window, {from, to - from});
             }

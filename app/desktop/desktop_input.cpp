@@ -1,4 +1,4 @@
-// Mouse and keys of the window.
+// Handles the window's mouse and keys.
 #include "app/desktop/desktop_shell.h"
 #include "app/view/panel/measure.h"
 #include "app/view/panel/panel_style.h"
@@ -13,7 +13,8 @@ namespace binosplat {
 namespace {
 
 constexpr double kDoubleClickSeconds = 0.4, kDoubleClickPx = 6.0;
-// The point to orbit around is at most this many distances of the centre away: not a hill behind a window.
+// The point to orbit around is at most this many times as far as the centre, so that it is not a hill behind
+// a window.
 constexpr double kFarthestPivot = 8.0;
 
 bool isIn(const WindowPart& part, const glm::dvec2& place_px) {
@@ -47,7 +48,7 @@ void DesktopShell::handle(const DesktopEvent& event) {
         case Kind::kMove:
             pointer_.place_px.reset();
             if (mover_.isDragging()) { mover_.dragTo(event.place_px); }
-            // Not the first click of two.
+            // This is then not the first click of two.
             if (glm::distance(event.place_px, pressed_px_) > kDoubleClickPx) { pressed_at_ = {}; }
             break;
         case Kind::kLeave:
@@ -159,7 +160,7 @@ void DesktopShell::pressKey(int key) {
             requests.open_file = true;
             break;
         case GLFW_KEY_C:
-            if (scenes_.other() != nullptr) { return; }  // held, it shows that one
+            if (scenes_.other() != nullptr) { return; }  // while held, it shows the other scene
             requests.compare = true;
             break;
         case GLFW_KEY_P:

@@ -109,7 +109,7 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
     }
     if (requests.compare) {
         say(scenes_.toggleComparison());
-        // On the page with the list of scenes one is chosen there.
+        // On the page with the list of scenes, it is chosen from that list.
         if (scenes_.comparesNext() && state_.settings().page != PanelPage::kScenes) { openFile(); }
     }
     if (requests.show_other && comparison_) { comparison_->is_whole_asked = !comparison_->is_whole_asked; }
@@ -126,7 +126,7 @@ void DesktopShell::showPanel() {
 void DesktopShell::load() {
     files_.read("loading saved settings", [this, scene = scenes_.name()]() -> FileWorker::Done {
         return [this, scene, saved = readSavedSettings(scene)] {
-            if (scene != scenes_.name()) { return; }  // meanwhile another one came
+            if (scene != scenes_.name()) { return; }  // meanwhile another one has come
             ViewSettings loaded = state_.settings();
             say(takeSavedSettings(saved, loaded));
             loaded.panel = state_.settings().panel;

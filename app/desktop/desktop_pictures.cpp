@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-// Pictures in motion may take this long, and have at least this resolution each way.
+// Pictures in motion may take this long, and have at least this resolution in each direction.
 constexpr double kMotionMs = 25.0, kCoarsest = 0.25;
 // An sRGB format, so that the presenter writes encoded values; the images that receive the bytes do not
 // decode them either.
@@ -23,8 +23,8 @@ void MotionScale::measure(double scale, double gpu_ms) {
     if (!(gpu_ms > 0.0)) { return; }
     const double full_ms = gpu_ms / (scale * scale);
     full_ms_ = full_ms_ == 0.0 ? full_ms : glm::mix(full_ms_, full_ms, 0.3);
-    // In steps of half the pixels, since another size waits for the frames in flight; and only for a clear
-    // gain.
+    // In steps of half the pixels, since a change of size waits for the frames in flight, and only for a
+    // clear gain.
     const double steps = std::log2(std::max(full_ms_ / kMotionMs, 1.0)), now = -2.0 * std::log2(scale_);
     if (std::abs(steps - now) > 0.75) { scale_ = std::max(std::exp2(-0.5 * std::round(steps)), kCoarsest); }
 }

@@ -14,7 +14,7 @@
 namespace binosplat {
 
 // The resolution, each way, of pictures in motion: chosen by the cost of a full one, so that they come about
-// as often as displays.
+// as often as the display is refreshed.
 class MotionScale {
 public:
     // A picture at this share of the resolution took this long on the device.
@@ -39,8 +39,8 @@ public:
     // otherwise it does not wait, and the picture may lack splats. Throws Error if memory is short.
     void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
                 const Look& look, bool waits);
-    // Records the parts' pictures, scaled, into a window that has been cleared; of each only what lies right
-    // of this share of its width.
+    // Records the parts' pictures, scaled, into a window that has been cleared; of each only what lies to the
+    // right of this share of its width.
     void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts,
                  double from_share = 0.0);
 

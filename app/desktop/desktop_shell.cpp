@@ -1,4 +1,4 @@
-// The window from its first picture to its last.
+// Runs the window from its first picture to its last.
 #include "app/desktop/desktop_shell.h"
 
 #include "app/options/modes.h"
@@ -24,7 +24,7 @@ constexpr double kTourWaySeconds = 4.0;  // from one viewpoint to the next
 // The panel's size: in its own pixels, on a desktop without magnification; and at most this share of the
 // window's width.
 constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
-// Share of the distance to the centre: nearer than the usual near plane if the camera goes close.
+// Share of the distance to the centre, so that the near plane is nearer than usual if the camera is close.
 constexpr double kNearShare = 0.05;
 
 double secondsSince(std::chrono::steady_clock::time_point then) {
@@ -124,7 +124,7 @@ void DesktopShell::takeScene() {
     viewpoints_.show(scenes_.get());
     ruler_.close();
     is_shown_ = false;
-    if (scene == nullptr) { return; }  // it made way for the next one
+    if (scene == nullptr) { return; }  // it has made way for the next one
     OrbitCamera camera(scene->start_view);
     if (const Similarity& placed = state_.sceneFromRoom(); !(placed == scene->start)) {  // where it was saved
         const glm::dvec3 ahead = placed.orientation * glm::dvec3(0.0, 0.0, camera.distance());

@@ -22,7 +22,7 @@ namespace binosplat {
 
 class DesktopShell {
 public:
-    // Begins to load the scene. `context` outlives the shell.
+    // Begins to load the scene. `context` must outlive the shell.
     DesktopShell(const ViewOptions& options, const ViewSettings& settings, const Context& context);
 
     void run();
@@ -83,12 +83,12 @@ private:
     void handle(const DesktopEvent& event);
     void press(const DesktopEvent& event);
     void pressKey(int key);
-    // What the picture shows at a place of the window or, if that is nothing, the place as far away as the
-    // centre.
+    // The point of the scene that the picture shows at a place of the window or, if it shows nothing there, a
+    // point as far away as the centre.
     [[nodiscard]] std::optional<glm::dvec3> seenAt(const glm::dvec2& place_px);
     [[nodiscard]] glm::dvec3 under(const glm::dvec2& place_px);
     void goTo(const Viewpoint* viewpoint, double within_seconds = 0.35);  // null: stays
-    // What is written goes to the panel while it asks for something.
+    // Typed text goes to the panel while it asks for something.
     bool takesText(const DesktopEvent& event);
     [[nodiscard]] HeldMotion heldMotion() const {
         return panel_.entry().isOpen() ? HeldMotion() : window_.heldMotion();

@@ -20,7 +20,7 @@ struct EyePart {
 [[nodiscard]] bool showsTwoEyes(WindowStereo stereo);
 // Parts of equal size that fill an area; one part for an anaglyph.
 std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px);
-// The part that a pixel of the area is in, if any.
+// The part that contains a pixel of the area, if any.
 std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px);
 
 // How the eyes look at the scene.
@@ -35,7 +35,7 @@ struct WindowSight {
 // One eye, or two, [kLeft] and [kRight], of `size_px`. Content in the plane of the screen is at the same
 // pixel for both.
 std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm::uvec2 size_px);
-// The place that an eye sees at a pixel of its picture, `depth` along its axis.
+// The place that an eye sees at a pixel of its picture, at `depth` along its axis.
 glm::dvec3 pointAt(const Eye& eye, const glm::dvec2& place_px, double depth);
 
 }  // namespace binosplat

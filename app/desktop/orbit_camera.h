@@ -18,22 +18,22 @@ public:
     [[nodiscard]] glm::dvec3 centre() const;
     [[nodiscard]] glm::dvec3 up() const;
 
-    // Turns about a point, which stays at its place in the picture; never beyond straight up or down.
+    // Turns about a point, which stays where it is in the picture; never beyond straight up or down.
     void orbit(const glm::dvec3& pivot, double right_rad, double up_rad);
     // Turns on the spot.
     void turn(double right_rad, double up_rad) { orbit(position_, right_rad, up_rad); }
     // Moves without turning: content at `depth` moves by `pixels` in a picture with this focal length.
     void pan(const glm::dvec2& pixels, double depth, double focal_px);
-    // By a step along the camera's axes.
+    // Moves by a step along the camera's axes.
     void fly(const glm::dvec3& step) { position_ += orientation() * step; }
-    // Towards a point, which stays at its place in the picture, until `share` of the distance is left.
+    // Moves towards a point, which stays where it is in the picture, until `share` of the distance is left.
     void approach(const glm::dvec3& point, double share);
 
     // The same direction, with this point in the middle of the picture at its current distance.
     [[nodiscard]] OrbitCamera centredOn(const glm::dvec3& point) const;
     // The same direction, with a whole sphere in a picture of this angle.
     [[nodiscard]] OrbitCamera framing(const glm::dvec3& middle, double radius, double angle_rad) const;
-    // Between the two, along the shorter way.
+    // An interpolation between the two, along the shorter way.
     static OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, double share);
 
     bool operator==(const OrbitCamera&) const = default;

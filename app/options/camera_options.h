@@ -1,4 +1,4 @@
-// From camera options, camera files and headsets to the eyes of a frame.
+// Makes the eyes of a frame from camera options, camera files and headsets.
 #pragma once
 
 #include "app/options/options.h"
@@ -36,14 +36,15 @@ struct Cameras {
     glm::dvec3 origin{0.0};    // the eyes' origin in the file: Scene::origin
 };
 
-// The eyes among the scene's `positions`. Missing options come from the files, then from the scene. Throws
-// Error if the points span no view.
+// The eyes in the coordinates of the scene's `positions`. Missing options come from the files, then from the
+// scene. Throws Error if the points do not define a view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
-// The options' gazes for FrameSettings, by Side, or of the one eye of `mono`; empty without foveation.
+// The options' gazes for FrameSettings, by Side, or that of the single eye of `mono`; empty without
+// foveation.
 std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo);
 
-// The same eyes on a head that moved.
+// The same eyes on a head that has moved.
 Cameras moveCameras(const Cameras& start, const Pose& world_from_middle);
 
 }  // namespace binosplat

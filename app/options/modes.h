@@ -1,4 +1,4 @@
-// From the options to a frame's mode and settings.
+// Turns the options into a frame's mode and settings.
 #pragma once
 
 #include "app/options/options.h"
@@ -7,11 +7,11 @@
 namespace binosplat {
 
 // Throws Error (bad input) if the options ask for half resolution in the periphery without an angle of
-// foveation. Modes that have no periphery just ignore it.
+// foveation. Modes without a periphery just ignore it.
 void requirePeriphery(const StereoOptions& stereo);
 
-// In a headset, unless the options say otherwise: turning the head swaps no splats, and canted eyes share one
-// order.
+// In a headset, unless the options say otherwise: turning the head does not swap splats, and canted eyes
+// share one order.
 inline constexpr Order kWearersOrder = Order::kDistance;
 
 // The order of splats. If axes stay, one that does not change when they move.

@@ -52,7 +52,7 @@ struct OptionText {
     unsigned commands;
     const char* value;  // placeholder, with the unit; "" for a flag, in brackets if optional
     const char* help;
-    const char* standard = "";  // the default, if the field's own does not tell
+    const char* standard = "";  // the default, if the field's own does not say it
     bool required = false;
     bool by_command = false;  // the default depends on the command
 

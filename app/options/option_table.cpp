@@ -14,7 +14,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
-// A gap is filled pixel by pixel from its two ends; a longer one is not a crack in a surface but uncovered
+// A gap is filled pixel by pixel from its two ends; a longer run is not a crack in a surface but uncovered
 // background.
 constexpr std::uint64_t kMaxGapPx = 64;
 constexpr std::uint64_t kMaxMoveCost = 1'000'000;
@@ -85,12 +85,13 @@ OptionField<Owner> slidesTo(double most, OptionField<Owner> field) {
 std::span<const OptionRow<RunOptions>> runRows() {
     static const std::vector<OptionRow<RunOptions>> rows{
         // Camera.
-        {{"eye", "camera", kWearer, "x,y,z", "middle of the eyes", "where `binosplat info` says"},
+        {{"eye", "camera", kWearer, "x,y,z", "the point midway between the eyes",
+          "where `binosplat info` says"},
          field::make<kCamera, &CameraOptions::eye>("", readVector)},
-        {{"look", "camera", kWearer, "x,y,z", "point looked at"},
+        {{"look", "camera", kWearer, "x,y,z", "the point to look at"},
          field::make<kCamera, &CameraOptions::look>("", readVector)},
-        {{"up", "camera", kWearer, "x,y,z", "direction that is up in the picture",
-          "of the cameras, the floor or the built-in scene, or 0,-1,0"},
+        {{"up", "camera", kWearer, "x,y,z", "the direction that points up in the picture",
+          "that of the cameras, the floor or the built-in scene, or 0,-1,0"},
          field::make<kCamera, &CameraOptions::up>("", readVector)},
         {{"fov-x", "camera", kPictures, "DEG", "horizontal field of view",
           "60, or the built-in scene's view"},
@@ -98,24 +99,24 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"size", "camera", kPictures, "WxH", "pixels per eye; one number for both sides",
           "1024x1024, or that of --cameras or --headset"},
          field::make<kCamera, &CameraOptions::size_px>(fmt::format("1 to {} each", kMaxSide), readSize)},
-        {{"cameras", "camera", kWearer | kConvert, "FILE", "cameras.json of a 3DGS or 2DGS training",
-          "with --view, the one beside SCENE or in its folder"},
+        {{"cameras", "camera", kWearer | kConvert, "FILE", "cameras.json from 3DGS or 2DGS training",
+          "with --view, the one next to SCENE or in its folder"},
          field::file<kCamera, &CameraOptions::cameras_file>()},
-        {{"view", "camera", kWearer, "N", "which camera of --cameras, from 0"},
+        {{"view", "camera", kWearer, "N", "which camera of --cameras, counting from 0"},
          field::count<kCamera, &CameraOptions::view>(0, kAny32)},
         {{"headset", "camera", kPictures, "NAME",
           "angles, size and eye distance from configs/headsets/NAME.toml"},
          field::text<kCamera, &CameraOptions::headset>()},
         {{"near", "camera", kWearer, "Z",
-          "nearest depth that is drawn, in scene units or, in view, in the wearer's metres",
-          "0.2, or a fifth of the size of a scene smaller than a unit"},
+          "nearest depth that is drawn, in scene units (in view: in the wearer's metres)",
+          "0.2, or a fifth of the scene's size if that is less than a unit"},
          field::number<kCamera, &CameraOptions::near>(1e-6, 1e6)},
         {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"},
          field::make<kCamera, &CameraOptions::background>("0 to 1 each", readColour)},
 
         // Stereo.
-        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made",
-          "predicted; with view and --path temporal", /*required*/ false,
+        {{"mode", "stereo", kTried, "MODE", "how both eyes' pictures are made",
+          "predicted; with view and --path: temporal", /*required*/ false,
           /*by_command*/ true},
          field::named<kStereo, &StereoOptions::mode>({kModeNames.begin(), kModeNames.end()})},
         {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"},
@@ -123,28 +124,27 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"ipd", "stereo", kPictures, "METRES", "distance between the eyes", "0.063, or the headset's"},
          field::number<kStereo, &StereoOptions::ipd_m>(0.0, 10.0)},
         {{"center-roi", "stereo", kTried, "",
-          "paper mode: also render again the holes that remain inside the picture"},
+          "paper mode: also render the holes that remain inside the picture"},
          field::flag<kStereo, kWarp, &StereoSettings::center_rois>()},
-        {{"margin", "stereo", kTried, "PX", "paper mode: pixels added around what is rendered again"},
+        {{"margin", "stereo", kTried, "PX",
+          "paper mode: pixels added around each part that is rendered after reprojection"},
          slidesTo(128, field::count<kStereo, kWarp, &StereoSettings::margin_px>(0, kMaxSide))},
         {{"budget", "stereo", kTried, "FRACTION",
-          "share of work for patching the reprojected picture: of an eye's (predicted), of both eyes' "
-          "(temporal)"},
+          "how much may be rendered each frame, as a share of the work of rendering one eye (predicted) or "
+          "both (temporal) in full"},
          field::share<kStereo, kWarp, &StereoSettings::budget>()},
         {{"error-bound", "stereo", kTried, "DB",
-          "temporal mode: tiles expected to be under this PSNR, or up to 4.4 dB above it where contrast is "
-          "low, are rendered again first, "
-          "with --budget as the limit of a frame's work; 0: "
-          "off"},
+          "temporal mode: tiles that are expected to have less than this PSNR (up to 4.4 dB more where "
+          "contrast is low) are rendered first, within --budget; 0: off"},
          field::number<kStereo, kWarp, &StereoSettings::error_bound_db>(0.0, 60.0)},
         {{"move-cost", "stereo", kTried, "PAIRS",
-          "predicted mode: tiles that meet at most this many splats are rendered, not reprojected"},
+          "predicted mode: tiles that at most this many splats touch are rendered, not reprojected"},
          field::count<kStereo, kWarp, &StereoSettings::move_cost>(0, kMaxMoveCost)},
-        {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
+        {{"depth", "stereo", kTried, "KIND", "the depth by which a pixel is reprojected: D, D/A or A/I"},
          field::named<kStereo, kWarp, &StereoSettings::depth_choice>({"sum", "mean", "inverse"})},
         {{"order", "stereo", kTried, "KIND",
           "blending order: by depth, or by distance from the point midway between the eyes",
-          "the scene's, or depth; with view or --axes stay distance", /*required*/ false,
+          "the scene's, or depth; with view or --axes stay: distance", /*required*/ false,
           /*by_command*/ true},
          field::named<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
@@ -157,75 +157,71 @@ std::span<const OptionRow<RunOptions>> runRows() {
           "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
          field::flag<kStereo, &StereoOptions::per_eye>()},
         {{"gap-px", "stereo", kTried, "PX",
-          "runs of uncovered pixels up to this long are interpolated, longer ones are holes"},
+          "longest run of uncovered pixels that is interpolated; longer runs are holes"},
          field::count<kStereo, kWarp, &StereoSettings::gap_px>(0, kMaxGapPx)},
         {{"edge-samples", "stereo", kTried, "N", "paper mode: samples along each edge of the picture"},
          field::count<kStereo, kWarp, &StereoSettings::edge_samples>(1, kMaxSide)},
         {{"edge-bounds", "stereo", kTried, "KIND",
-          "paper mode: width of the re-rendered borders, as in the paper, or also covering disocclusion by "
-          "near content"},
+          "paper mode: width of the borders that are rendered after reprojection: as in the paper, or wide "
+          "enough for disocclusion by near content too"},
          field::named<kStereo, kWarp, &StereoSettings::tight_edges>({"paper", "tight"})},
         {{"hole-error", "stereo", kTried, "E",
-          "predicted mode: weight of the error expected of a hole's pixel"},
+          "predicted mode: weight of the error expected in a hole's pixels"},
          field::number<kStereo, kWarp, &StereoSettings::hole_error>(0.0, kMaxExpectedError)},
         {{"newcomer-error", "stereo", kTried, "E",
-          "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
+          "predicted mode: error expected in a pixel covered by splats that the dominant eye does not see"},
          field::number<kStereo, kWarp, &StereoSettings::newcomer_error>(0.0, kMaxExpectedError)},
         {{"foveation", "stereo", kTried, "DEG",
-          "angle around the gaze within which all errors count; beyond it, only those the eye can see "
-          "(predicted, temporal; mono and "
-          "alternate with --periphery half); 0: off"},
+          "angle around the gaze within which all errors count; beyond it, only errors that the eye can see "
+          "count (predicted, temporal; mono and alternate with --periphery half); 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
         {{"periphery", "stereo", kTried, "KIND",
-          "mono, predicted, alternate and temporal modes, with --foveation: full resolution, or half of it "
-          "where the eye would not see "
-          "more",
-          "full; with view half", /*required*/ false, /*by_command*/ true},
+          "mono, predicted, alternate and temporal modes, with --foveation: full resolution everywhere, or "
+          "half of it where the eye would see no difference",
+          "full; with view: half", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::half_periphery>({"full", "half"})},
         {{"axes", "stereo", kWearer, "KIND",
           "in a headset, with --path or --motion: the axes of the pictures follow the view, or stay while "
-          "the head turns a few degrees; "
-          "then "
-          "pictures are shown as a headset's compositor shows them, resampled once to the view",
-          "view; in a headset stay", /*required*/ false, /*by_command*/ true},
+          "the head turns by a few degrees; then each picture is resampled once to the view, as a headset's "
+          "compositor does",
+          "view; in a headset: stay", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::axes>({"view", "stay"})},
-        {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward",
-          "each lens's centre"},
+        {{"gaze", "stereo", kPictures, "x,y,z",
+          "direction of the gaze relative to the head: right, down, forward", "each lens's centre"},
          field::make<kStereo, &StereoOptions::gaze>("of any length", readDirection)},
 
         // Scene.
-        {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest",
+        {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene; 0 is the finest",
           "the finest within --memory-limit"},
          field::count<kLoad, &LoadOptions::lod>(0, kAny32)},
         {{"splat-budget", "scene", kWearer, "N",
-          "most splats of a streamed SOG scene that are loaded at a time: levels are chosen by what the eyes "
-          "see",
+          "most splats of a streamed SOG scene to load at a time; levels are chosen by what the eyes see",
           "the finest level, or what the memory holds"},
          noneIfZero(field::count<kLoad, &LoadOptions::splat_budget>(1, kMaxSplats))},
         {{"scene-rate", "scene", kWearer, "HZ",
           "frames per second of a moving scene (a folder of numbered files)"},
          field::number<kLoad, &LoadOptions::scene_rate_hz>(0.01, kMaxRateHz)},
         {{"scene-blend", "scene", kWearer, "",
-          "interpolate between two frames of a moving scene, where their splats correspond"},
+          "interpolate between two frames of a moving scene where their splats correspond"},
          field::flag<kLoad, &LoadOptions::scene_blend>()},
         {{"sh-degree", "scene", kScenes, "N",
           "highest band of colours to keep; lower ones take less memory and time", "the scene's"},
          field::count<kLoad, &LoadOptions::sh_degree>(0, kMaxShDegree)},
-        {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, without the shortest axis of each"},
+        {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, dropping each one's shortest axis"},
          field::flag<kLoad, &LoadOptions::flatten>()},
         {{"antialiased", "scene", kScenes, "", "dim small 3D Gaussians, for scenes trained with antialiasing",
           "the file's"},
          field::flag<kLoad, &LoadOptions::antialiased>()},
         {{"cache-limit", "scene", kScenes, "MIB",
-          "disk space for scenes from http and https addresses, which are kept for the next time"},
+          "disk space for keeping scenes from http and https addresses"},
          field::count<kLoad, &LoadOptions::cache_limit_mib>(0, kMaxMemoryMib)},
         {{"metres-per-unit", "scene", kWearer, "M", "metres in one scene unit"},
          field::make<&RunOptions::metres_per_unit>("greater than 0", readPositive)},
 
         // Run.
-        {{"memory-limit", "run", kWearer, "MIB", "device memory that may be used", "all there is"},
+        {{"memory-limit", "run", kWearer, "MIB", "device memory that may be used", "all of it"},
          noneIfZero(field::count<&RunOptions::memory_limit_mib>(1, kMaxMemoryMib))},
-        {{"device", "run", kDevices | kConvert, "NAME|INDEX", "GPU to use: part of its name, or its number",
+        {{"device", "run", kDevices | kConvert, "NAME|INDEX", "GPU to use, by its number or part of its name",
           "the most capable"},
          field::text<&RunOptions::device>()},
     };
@@ -243,29 +239,30 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
         {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true},
          field::file<&RenderOptions::out>()},
         {{"layout", "", kRender, "KIND",
-          "both eyes in pictures of their own, or in one: side by side, or top and bottom (the left eye's)"},
+          "each eye in a picture of its own, or both in one: side by side, or the left eye's above the right "
+          "eye's"},
          field::named<&RenderOptions::layout>({"separate", "sbs", "tb"})},
         {{"projection", "", kRender, "KIND",
-          "flat, or for headsets: vr180, all that lies ahead of both eyes, or 360, all around; the last two "
-          "by equal angles, level and in "
-          "full"},
+          "flat; or for headsets: vr180 (what lies ahead, for both eyes) or 360 (all around), both "
+          "equirectangular, level and rendered in full"},
          field::named<&RenderOptions::projection>({"flat", "vr180", "360"})},
-        {{"video", "", kRender, "", "with --path: also video.mp4 of its frames, by ffmpeg"},
+        {{"video", "", kRender, "", "with --path: also make video.mp4 of its frames, with ffmpeg"},
          field::flag<&RenderOptions::video>()},
         {{"resume", "", kRender, "",
-          "with --path: continue after the frames that a stopped run left in --out"},
+          "with --path: continue after the frames that an interrupted run left in --out"},
          field::flag<&RenderOptions::resume>()},
         {{"path", "", kRender, "POSES.csv",
-          "head poses to render relative to the camera, one numbered frame after the other"},
+          "head poses relative to the camera; each is rendered as a numbered frame"},
          field::file<&RenderOptions::path>()},
         {{"path-axes", "", kRender, "AXES", "axes of --path"},
          field::named<&RenderOptions::path_axes>({"openxr", "unity"})},
         {{"from", "", kRender, "S",
-          "second of --path at which the frames begin; the head is at the camera then"},
+          "second of --path at which the frames begin, with the head at the camera"},
          field::number<kPathSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
-        {{"seconds", "", kRender, "S", "length of the part of --path that is rendered", "the rest of it"},
+        {{"seconds", "", kRender, "S", "how many seconds of --path to render", "the rest of it"},
          field::number<kPathSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
-        {{"rate", "", kRender, "HZ", "frames per second of --path, between its poses", "one for each pose"},
+        {{"rate", "", kRender, "HZ", "frames per second of --path, interpolated between its poses",
+          "one for each pose"},
          field::number<kPathSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
     };
     return rows;
@@ -281,26 +278,26 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"motion-axes", "", kBench, "AXES", "axes of --motion"},
          field::named<&BenchOptions::motion_axes>({"openxr", "unity"})},
         {{"from", "", kBench, "S",
-          "second of --motion at which the frames begin; the head is at the camera then"},
+          "second of --motion at which the frames begin, with the head at the camera"},
          field::number<kMotionSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
-        {{"seconds", "", kBench, "S", "length of the part of --motion that is played", "the rest of it"},
+        {{"seconds", "", kBench, "S", "how many seconds of --motion to play", "the rest of it"},
          field::number<kMotionSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
-        {{"rate", "", kBench, "HZ", "frames per second of --motion, between its poses", "one for each pose"},
+        {{"rate", "", kBench, "HZ", "frames per second of --motion, interpolated between its poses",
+          "one for each pose"},
          field::number<kMotionSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
         {{"frame-time", "", kBench, "MS",
-          "with --motion: time that a frame of temporal may take; the viewer's controller (balanced) chooses "
-          "size and bound for it; 0: no "
-          "limit"},
+          "with --motion: time that a frame of temporal may take; the viewer's governor (balanced) chooses "
+          "resolution and bound to keep to it; 0: no limit"},
          field::number<&BenchOptions::frame_ms>(0.0, 10000.0)},
-        {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
+        {{"photos", "", kBench, "DIR", "photographs taken by the cameras of --cameras, to compare with"},
          field::file<&BenchOptions::photos_folder>()},
         {{"orders", "", kBench, "",
-          "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels "
-          "that pop"},
+          "compare both orders of splats with each pixel's exact order, on the CPU, and count pixels that "
+          "pop"},
          field::flag<&BenchOptions::orders>()},
         {{"every", "", kBench, "N",
-          "score only every Nth frame of --motion (methods with a history render all), or camera of "
-          "--photos"},
+          "score only every Nth frame of --motion (methods with a history still render all frames), or every "
+          "Nth camera of --photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
         {{"repeats", "", kBench, "N", "measured frames per method", "5, or the config's"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
@@ -316,13 +313,13 @@ std::span<const OptionRow<ViewOptions>> viewRows() {
         {{"out", "", kView, "DIR", "directory for the simulated headset's pictures"},
          field::file<&ViewOptions::out>()},
         {{"compare", "", kView, "SCENE",
-          "another scene of the same place, to compare: in a window beside a curtain, in a headset while X "
-          "or A is held"},
+          "another scene of the same place to compare with: on the other side of a line in a window, while X "
+          "or A is held in a headset"},
          field::file<&ViewOptions::compare>()},
         {{"desktop", "", kView, "", "show the scene in a window, even if there is a headset"},
          field::flag<&ViewOptions::desktop>()},
         {{"headset-only", "", kView, "",
-          "end with exit code 3 if there is no headset, instead of showing the scene in a window"},
+          "if there is no headset, end with exit code 3 instead of showing the scene in a window"},
          field::flag<&ViewOptions::headset_only>()},
         {{"frames", "", kView, "N", "stop after N frames", "never"},
          noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
@@ -332,7 +329,7 @@ std::span<const OptionRow<ViewOptions>> viewRows() {
         {{"hide-hands", "", kView, "", "draw neither hands nor controllers"},
          field::flag<&ViewOptions::hide_hands>()},
         {{"shaders", "", kView, "DIR",
-          "for work on the shaders: a button of the panel, and F5, reload them from there"},
+          "for work on the shaders: F5 and a button in the panel reload them from this folder"},
          field::file<&ViewOptions::shaders>()},
         {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},
          field::file<&ViewOptions::script>([](const Setting& s) { return s.text(); })},
@@ -353,13 +350,11 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
 std::span<const OptionRow<ConvertOptions>> convertRows() {
     static const std::vector<OptionRow<ConvertOptions>> rows{
         {{"crop", "", kConvert, "x,y,z,r",
-          "keep the splats whose centres lie in this sphere, in scene units"},
+          "keep only the splats whose centres lie in this sphere, in scene units"},
          field::make<&ConvertOptions::crop>("", readSphere)},
         {{"keep", "", kConvert, "SHARE|N|SIZE",
-          "keep a share of the splats (0.5), a number (100000), or as many as fit into a file (50MB): those "
-          "that show most, which take "
-          "over "
-          "what the others showed",
+          "keep a share of the splats (0.5), a number of them (100000), or as many as fit into a file of a "
+          "size (50MB): those that contribute most to the picture, adjusted to make up for the others",
           "all of them"},
          {.read = [](const Setting& setting, ConvertOptions& convert) { convert.keep = readKeep(setting); },
           .value = [](const ConvertOptions&) { return OptionValue(); },
@@ -368,10 +363,11 @@ std::span<const OptionRow<ConvertOptions>> convertRows() {
           .most = {},
           .slider_most = {},
           .choices = {}}},
-        {{"levels", "", kConvert, "N", "levels of detail of OUT/lod-meta.json, each of half the splats",
+        {{"levels", "", kConvert, "N",
+          "levels of detail in OUT/lod-meta.json, each with half the splats of the one before",
           "until fewer than 50,000 are left"},
          noneIfZero(field::count<&ConvertOptions::levels>(1, 16))},
-        {{"chunk-splats", "", kConvert, "N", "splats in a chunk of OUT/lod-meta.json, at most", "524288"},
+        {{"chunk-splats", "", kConvert, "N", "most splats in a chunk of OUT/lod-meta.json", "524288"},
          noneIfZero(field::count<&ConvertOptions::chunk_splats>(4096, 16777216))},
     };
     return rows;
@@ -401,7 +397,8 @@ std::span<const OptionRow<StabilityOptions>> stabilityRows() {
 std::span<const OptionRow<KernelsOptions>> kernelsRows() {
     static const std::vector<OptionRow<KernelsOptions>> rows{
         {{"out", "", kKernels, "DIR", "directory for kernels.json"}, field::file<&KernelsOptions::out>()},
-        {{"filter", "", kKernels, "REGEX", "only kernels whose line (name and constants) matches", "all"},
+        {{"filter", "", kKernels, "REGEX", "only kernels whose line (name and constants) matches this",
+          "all"},
          field::text<&KernelsOptions::filter>()},
     };
     return rows;

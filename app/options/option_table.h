@@ -31,7 +31,7 @@ std::string textOf(const OptionValue& value);
 // An option's description for people.
 struct OptionDescription {
     OptionText text;
-    std::string range, standard;              // empty if there is none, or the help tells
+    std::string range, standard;              // empty if there is none, or the help says
     std::vector<std::string_view> choices{};  // as in its field
     bool is_file = false;
 

@@ -112,7 +112,7 @@ struct BenchOptions {
     MotionAxes motion_axes = MotionAxes::kOpenXr;  // --motion-axes: of the recording
     MotionSegment segment;                         // --from, --seconds, --rate: of the motion
     std::string photos_folder;                     // --photos: photographs of the cameras of --cameras
-    // --frame-time: of a motion's frames; 0: they take what they take
+    // --frame-time: of a motion's frames; 0: as long as they take
     double frame_ms = 0.0;
     std::uint32_t every = 1;  // --every: of a motion's poses or of the cameras
     // --repeats: measured frames per method; 0: as the config says

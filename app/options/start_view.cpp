@@ -49,7 +49,7 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
     };
     if (wish.up) { return with(wish.up, "given"); }
     if (const auto found = upOfCameras(own.cameras, scene)) { return with(found->up, found->why); }
-    return with({}, "this camera's, since the cameras look every way");
+    return with({}, "this camera's, since the cameras look in all directions");
 }
 
 glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) {
@@ -119,8 +119,8 @@ std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, con
     // A drone's cameras that look straight down have their up in every direction, or all along one course.
     if (!(glm::length(up) > 0.5)) {
         const auto floor = upBeneath(scene, place);
-        return floor ? std::optional(
-                           CamerasUp{*floor, "that of the floor beneath the cameras, which look every way"})
+        return floor ? std::optional(CamerasUp{
+                           *floor, "that of the floor beneath the cameras, which look in all directions"})
                      : std::nullopt;
     }
     up = glm::normalize(up);

@@ -1,4 +1,4 @@
-// The start in a scene, and the reason for it.
+// Where one starts in a scene, and why.
 #pragma once
 
 #include "app/options/options.h"
@@ -22,13 +22,13 @@ struct SceneCameras {
 // Positions are relative to `origin`, the scene's.
 SceneCameras readSceneCameras(const std::filesystem::path& scene, const glm::dvec3& origin);
 
-// The up that cameras suggest, and the reason in a line.
+// The up direction that cameras suggest, and the reason, in one line.
 struct CamerasUp {
     glm::dvec3 up;
     std::string why;
 };
-// The mean up of the cameras, or that of the floor beneath them if they look every way or may all look
-// straight down. Empty if neither is known.
+// The mean up of the cameras, or that of the floor beneath them if they look in every direction or may all
+// look straight down. Empty if neither is known.
 std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, const Scene& scene);
 
 // The camera's view, upright along `up`: `look` is at the median depth of the scene.

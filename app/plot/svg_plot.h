@@ -11,15 +11,15 @@ namespace binosplat {
 
 struct PlotLine {
     std::string label;
-    // Pairs of x and y; those without a place on the axes are left out.
+    // Pairs of x and y; those without a place on the axes are skipped.
     std::vector<std::pair<double, double>> points = {};
-    // Written beside the points if there is room; empty: none.
+    // Written next to the points if there is space; empty: none.
     std::vector<std::string> names = {};
     bool joined = true;  // a line through the points
     bool dots = true;
 };
 
-// A value of x that has no y: a dashed vertical line with its name.
+// A value of x without a y: a dashed vertical line with its name.
 struct PlotMark {
     std::string name;
     double x;

@@ -44,7 +44,7 @@ Json valueJson(const OptionValue& value) {
     return std::visit(convert, value);
 }
 
-// Every option under its own name with the value that was used; null for one that did not apply.
+// Every option under its own name with the value that was used; null for options that did not apply.
 Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     Json json{{"scene", options.scene},
               {"config", options.run.config.empty() ? Json() : Json(options.run.config)}};

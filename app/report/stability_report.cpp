@@ -15,7 +15,7 @@ using stability::PictureScore;
 
 namespace {
 
-// Where equal pictures are plotted: slightly above what single precision can resolve.
+// Where equal pictures are plotted, slightly above what single precision can resolve.
 constexpr double kEqualDb = 150.0;
 
 std::string decibels(double psnr_db) {

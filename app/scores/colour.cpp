@@ -27,7 +27,7 @@ float channelFromEncoded(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-// The cube root, and below (6/29)^3 its tangent there.
+// The cube root or, below (6/29)^3, its tangent at that point.
 float compress(float share) {
     constexpr float kKnee = 6.0f / 29.0f;
     return share > kKnee * kKnee * kKnee ? std::cbrt(share) : share / (3.0f * kKnee * kKnee) + 4.0f / 29.0f;

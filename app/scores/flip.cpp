@@ -47,7 +47,7 @@ double weightOf(const SensitivityTerm& term, double pixels_per_degree) {
     return term.a * std::sqrt(std::numbers::pi / term.b) * sum * sum;
 }
 
-// Scales the positive weights to the sum 1 and the negative ones to -1.
+// Scales the positive weights to a sum of 1 and the negative ones to -1.
 Weights balance(const std::vector<double>& weights) {
     double above = 0.0, below = 0.0;
     for (const double weight : weights) { (weight > 0.0 ? above : below) += std::abs(weight); }
@@ -99,7 +99,7 @@ void setPixel(Planes& planes, std::size_t pixel, const glm::vec3& value) {
     for (int i = 0; i < 3; ++i) { planes[static_cast<std::size_t>(i)].values[pixel] = value[i]; }
 }
 
-// R, G and B where all are finite.
+// R, G and B if all are finite.
 bool readRgb(const Image& image, std::size_t pixel, glm::vec3& rgb) {
     const float* values = image.values.data() + pixel * static_cast<std::size_t>(image.channels);
     bool finite = true;

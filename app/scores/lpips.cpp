@@ -24,7 +24,7 @@ static_assert(Lpips::kValues == std::accumulate(SqueezeNet::kStageChannels.begin
                                                 SqueezeNet::kStageChannels.end(), SqueezeNet::kWeights));
 
 constexpr std::array<float, 3> kMean{-0.030f, -0.088f, -0.188f}, kDeviation{0.458f, 0.448f, 0.450f};
-constexpr double kLeastLength = 1e-10;  // keeps a pixel without any feature from a division by zero
+constexpr double kLeastLength = 1e-10;  // prevents a division by zero for a pixel without features
 
 std::vector<float> readWeights(const std::filesystem::path& file) {
     constexpr std::size_t kBytes = Lpips::kValues * sizeof(float);
@@ -115,7 +115,7 @@ Lpips::Lpips(const std::vector<float>& values, const std::string& file)
 double Lpips::measure(const Image& a, const Image& b, int threads) const {
     requireComparable(a, b);
     check(std::min(a.size_px.x, a.size_px.y) >= kLpipsLeastSide_px,
-          "LPIPS: pictures have {}x{} pixels, must have at least {} a side", a.size_px.x, a.size_px.y,
+          "LPIPS: pictures have {}x{} pixels, must have at least {} on each side", a.size_px.x, a.size_px.y,
           kLpipsLeastSide_px);
     if (!isFinitePicture(a) || !isFinitePicture(b)) { return std::numeric_limits<double>::infinity(); }
     Image of_a = scaleForNetwork(a), of_b = scaleForNetwork(b);

@@ -26,7 +26,7 @@ Image scaleForNetwork(const Image& picture);
 
 class Lpips {
 public:
-    // Values in a file of weights: those of SqueezeNet, then a head for each of its stages, one weight a
+    // Values in a file of weights: those of SqueezeNet, then a head for each of its stages, one weight per
     // channel.
     static constexpr std::size_t kValues = 724'736;
 
@@ -37,11 +37,10 @@ public:
     // 0 (alike) or more; below 1 for all but the strangest pictures. After each stage every pixel's features
     // are scaled to length 1; squared differences are weighted by the stage's head, added over channels and
     // averaged over pixels; the stages are added. Symmetric. Infinite where a value of either picture is not
-    // finite.
-    // Beside the two pictures it holds at most 160 bytes for each pixel of one: 160 MiB at 1024x1024, which
-    // takes two cores one to two seconds (6 billion multiplications a picture). The result does not depend on
-    // the number of threads. Throws Error if sizes differ, a side is less than kLpipsLeastSide_px, or a
-    // picture has fewer than three channels.
+    // finite. Beside the two pictures it holds at most 160 bytes for each pixel of one: 160 MiB at 1024x1024,
+    // which takes two cores one to two seconds (6 billion multiplications per picture). The result does not
+    // depend on the number of threads. Throws Error if sizes differ, a side is less than kLpipsLeastSide_px,
+    // or a picture has fewer than three channels.
     [[nodiscard]] double measure(const Image& a, const Image& b, int threads = 2) const;
 
     [[nodiscard]] const SqueezeNet& network() const { return network_; }

@@ -1,5 +1,5 @@
-// How much two pictures differ: one pass over both, several figures. (Per-tile figures, SSIM and FLIP have
-// files of their own.)
+// How much two pictures differ: several figures from one pass over both. (Figures per tile, SSIM and FLIP
+// have files of their own.)
 #pragma once
 
 #include "engine/picture/image.h"
@@ -8,11 +8,12 @@
 
 namespace binosplat {
 
-// Two steps of an 8-bit display: the rounding that a comparison tolerates before a value counts as off.
+// Two steps of an 8-bit display: the rounding that a comparison tolerates before a value counts as wrong.
 inline constexpr double kTwoDisplaySteps = 2.0 / 255.0;
 
-// Over all values, i.e. pixels times the channels compared. A pair in which either value is not finite counts
-// as off, with an infinite difference, even if both are alike: neither picture may hold such a value.
+// Over all values, that is, pixels times the channels compared. A pair in which either value is not finite
+// counts as wrong, with an infinite difference, even if both are the same: neither picture may contain such a
+// value.
 struct Difference {
     std::uint64_t values = 0;
     std::uint64_t not_finite = 0;  // pairs with a NaN or an infinity
@@ -20,9 +21,9 @@ struct Difference {
     double largest = 0.0;          // largest |a - b|
     double mean_square = 0.0;      // mean (a - b)^2
 
-    // Against a peak of 1: infinity for equal pictures, -infinity where a value is not finite.
+    // Against a peak of 1: infinity for equal pictures, -infinity if any value is not finite.
     [[nodiscard]] double psnrDb() const;
-    // Share of the values that are off, 0 to 1.
+    // Share of the values that are wrong, 0 to 1.
     [[nodiscard]] double shareOff() const {
         return values > 0 ? static_cast<double>(off) / static_cast<double>(values) : 0.0;
     }

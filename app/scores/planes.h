@@ -21,7 +21,7 @@ struct Plane {
 enum class Border {
     kClamp,  // the nearest pixel of the picture
     kZero,   // zeros
-    // nothing: the weights inside are scaled to the kernel's sum (kernels of positive weights only)
+    // nothing: the weights inside are scaled to the kernel's sum (only for kernels with positive weights)
     kCutWindow,
 };
 
@@ -29,7 +29,7 @@ enum class Border {
 // in(x + i - radius).
 using Weights = std::vector<float>;
 
-// Weights exp(-x^2 / (2 sigma^2)) at whole x from -radius to radius, scaled to the sum 1.
+// Weights exp(-x^2 / (2 sigma^2)) at integer x from -radius to radius, scaled to a sum of 1.
 Weights gaussianKernel(double sigma, int radius);
 
 // `across` along rows, then `down` along columns. Same size as `in`; the result does not depend on the number
@@ -41,10 +41,10 @@ struct PixelScores {
     glm::uvec2 size_px{0, 0};
     std::vector<float> values;
 
-    // Over all pixels; nothing where there are none.
+    // Over all pixels; nothing if there are none.
     [[nodiscard]] std::optional<double> mean() const;
-    // Over the pixels whose class (one per pixel, such as pixelOrigins gives) is `chosen`; nothing where
-    // there are none. Throws Error if there are not as many classes as pixels.
+    // Over the pixels whose class (one per pixel, as from pixelOrigins) is `chosen`; nothing if there are
+    // none. Throws Error if there are not as many classes as pixels.
     [[nodiscard]] std::optional<double> meanWhere(std::span<const std::uint8_t> classes,
                                                   std::uint8_t chosen) const;
 };

@@ -1,4 +1,4 @@
-// Scaling pictures up.
+// Scales pictures up.
 #include "app/scores/resize.h"
 
 #include "engine/error.h"

@@ -1,4 +1,4 @@
-// SqueezeNet's layers on the CPU. Channels lie side by side, so that a row of a kernel meets one run of
+// SqueezeNet's layers on the CPU. Channels lie side by side, so that a row of a kernel covers one run of
 // neighbouring values.
 #include "app/scores/squeezenet.h"
 

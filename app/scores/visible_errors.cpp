@@ -18,9 +18,9 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t kTile = gpu::kTileSize;
-// A change of the luma from pixel to pixel, above which there is an edge.
+// A change in luma from pixel to pixel above which there is an edge.
 constexpr float kStrongEdge = 0.06f;
-// A tile has texture if the square of its gradient is more, mean of its pixels.
+// A tile has texture if its squared gradient, averaged over its pixels, is more than this.
 constexpr double kTexture = 2e-4;
 // Keeps flat tiles' sharpness finite.
 constexpr double kNoTexture = 1e-6;
@@ -64,7 +64,7 @@ public:
     [[nodiscard]] bool isShown(std::size_t x, std::size_t y) const {
         return sight_ == nullptr || sight_->rendered_tiles[y * width_ + x] != Sight::kNoTile;
     }
-    // With the pixels that a gradient needs.
+    // Along with the pixels that a gradient needs.
     [[nodiscard]] bool isShownAround(std::size_t x, std::size_t y) const {
         if (sight_ == nullptr) { return true; }
         const std::size_t height = sight_->rendered_tiles.size() / width_;
@@ -143,9 +143,9 @@ double lostEdges(const Luma& picture, const Luma& full, const SeenPixels& seen) 
     return edges > 0 ? static_cast<double>(lost) / static_cast<double>(edges) : 0.0;
 }
 
-// How much more an error changes across borders than within tiles, mean of both directions. With a sight by
-// its own tiles, mean of those that show a border: towards a lens's border the rendered tiles have more of
-// them, and errors count for less.
+// How much more an error changes across borders than within tiles, averaged over both directions. With a
+// sight, averaged over those of its own tiles that show a border: towards a lens's edge, more borders of
+// rendered tiles are seen, and errors count for less.
 double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
     struct Sums {
         double within = 0.0, across = 0.0;
@@ -179,7 +179,8 @@ double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
     return mean;
 }
 
-// By tiles: by how many octaves the picture is sharper than its full render; empty if that has no texture.
+// For each tile, by how many octaves the picture is sharper than its full render; empty if that has no
+// texture.
 std::vector<std::optional<double>> sharpnessOf(const Luma& picture, const Luma& full,
                                                const SeenPixels& seen) {
     std::vector<std::optional<double>> sharpness;

@@ -42,7 +42,7 @@ std::vector<Case> makeCatalogue() {
     cases.push_back(standAlone("equal depths", makeEqualDepths,
                                "ties are broken by the order of the scene, so nothing is left to rounding"));
     cases.push_back(standAlone("empty scene", makeEmpty, "only the background is visible"));
-    cases.push_back(standAlone("every tile covered", makeCovered, "a hundred discs meet every tile"));
+    cases.push_back(standAlone("every tile covered", makeCovered, "a hundred discs touch every tile"));
     cases.push_back(standAlone("eye inside a cloud", makeCloud,
                                "discs of all sizes around the eye, through it and through the near plane"));
     cases.back().moved = kPlacesOfCut;

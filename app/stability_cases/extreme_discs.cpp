@@ -75,7 +75,7 @@ Stage makeThroughEye(double distance) {
         Disc disc;
         turnAnyhow(disc, random);
         const glm::dvec3 normal = glm::normalize(glm::cross(disc.t_u, disc.t_v));
-        // The foot of the eye, and a centre up to 0.7 beside it within the plane.
+        // The foot of the perpendicular from the eye, and a centre up to 0.7 beside it within the plane.
         const glm::dvec3 in_plane = random.between(-0.5, 0.5) * glm::normalize(disc.t_u) +
                                     random.between(-0.5, 0.5) * glm::normalize(glm::cross(normal, disc.t_u));
         disc.centre = distance * normal + in_plane;

@@ -1,4 +1,4 @@
-// Stiff 3D Gaussians, in front of a wall and among ordinary ones.
+// Extreme 3D Gaussians, in front of a wall and among ordinary ones.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/stage_builder.h"
 
@@ -20,7 +20,7 @@ Stage makeGaussians(int count, unsigned seed, const std::function<void(Disc&, Ra
     return stage.finishGaussians();
 }
 
-// Along one direction each.
+// Needles, each along a given direction.
 Stage makeNeedlesAlong(double aspect, const std::function<glm::dvec3(const Disc&, int)>& direction) {
     return makeGaussians(40, 41, [&](Disc& splat, Random&, int i) {
         splat.t_u = direction(splat, i);
@@ -62,8 +62,8 @@ Stage makeLongSheets(double length) {
 Stage makeBeyondNear(double share) {
     const double near = StageBuilder().near;
     return makeGaussians(20, 43, [&](Disc& splat, Random& random, int i) {
-        // Each deeper than the one before by more than single precision loses: their order is not what is
-        // tested.
+        // Each is deeper than the previous one by more than single precision loses, since their order is not
+        // what is tested.
         splat.centre *= near * (1.0 + share * (1.0 + 0.2 * i)) / splat.centre.z;
         splat.scale = {random.between(0.5, 5.0), random.between(0.5, 5.0)};
         splat.thickness = random.between(0.0, 0.5);
@@ -115,7 +115,7 @@ Stage makeBrokenGaussians(double value) {
 Stage asGaussians(Stage stage) {
     Random random(47);
     for (const glm::vec2& scale : stage.scene.scales) {
-        // A third of them sheets.
+        // A third of them are sheets.
         const double share = std::max(random.between(-0.5, 1.0), 0.0);
         stage.scene.thicknesses.push_back(
             static_cast<float>(share * static_cast<double>(std::min(scale.x, scale.y))));

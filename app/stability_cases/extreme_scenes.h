@@ -30,7 +30,7 @@ Stage makeLongSheets(double length);         // no thickness, at 1e-7 rad, up to
 Stage makeBeyondNear(double share);
 Stage makeBesideEye(double slope);       // centres at this x/z or y/z
 Stage makeGaussianScales(double scale);  // from specks to those that hold the eye
-Stage makeFlatAxes(double count);        // so many of the three scales are 0
+Stage makeFlatAxes(double count);        // this many of the three scales are 0
 Stage makeGaussianOpacity(double opacity);
 Stage makeBrokenGaussians(double value);  // makeBrokenAttributes, and a thickness
 Stage asGaussians(Stage stage);           // discs given thicknesses of 0 to their shorter scale
@@ -41,7 +41,7 @@ Stage asDimmed(Stage stage);              // with these thicknesses unless they 
 Stage makeUnit(double unit);
 // Moves a scene and the eyes this far from the world's origin along every axis.
 Stage makeFarOff(double offset);
-Stage makeTwoPlaces(double distance);  // the eyes at a few splats, most splats so far away
+Stage makeTwoPlaces(double distance);  // the eyes at a few splats, most splats this far away
 Stage makeEyeDistance(double distance);
 Stage makeCanting(double degrees);
 Stage makeFieldOfView(double degrees);

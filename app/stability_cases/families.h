@@ -1,4 +1,4 @@
-// Curves of the catalogue, and the bounds that most of them keep to.
+// Curves of the catalogue, and the bounds that most of them satisfy.
 #pragma once
 
 #include "app/stability_cases/catalogue.h"
@@ -27,8 +27,8 @@ inline constexpr Bound kRounding{65.0, 0.0005};
 // If a reprojected pixel's place rounds to the next pixel, or a tile is chosen in place of one that is
 // expected to gain as much, single pixels differ by as much as their neighbours do.
 inline constexpr Bound kPlaces{40.0, 0.01, kInfinity, 0.15};
-// On the device, discs that come through the near plane are bounded by boxes: it takes some for visible that
-// the twin knows to meet no pixel, and so expects errors elsewhere.
+// On the device, discs that cross the near plane are bounded by boxes: it counts some as visible that, as the
+// twin knows, do not reach a pixel, and therefore expects errors elsewhere.
 inline constexpr Bound kPlacesOfCut{40.0, 0.01, kInfinity, 0.35};
 
 std::vector<Family> makeDiscFamilies();

@@ -220,7 +220,7 @@ void addGaussianCases(std::vector<Case>& cases) {
         "ties are broken by the order of the scene"));
     cases.push_back(standAlone(
         "3D every tile covered", [] { return asGaussians(makeCovered()); },
-        "a hundred 3D Gaussians meet every tile"));
+        "a hundred 3D Gaussians touch every tile"));
     cases.push_back(standAlone(
         "3D eye inside a cloud", [] { return asGaussians(makeCloud()); },
         "of all sizes, around the eye, its near plane and beside it"));

@@ -12,7 +12,7 @@ constexpr double kHalfWay = kStep * (kFrames - 1) / 2.0;
 // A hit that falls to 1/255 one frame earlier here than there.
 constexpr double kOneFlip = 1.0 / 255.0 + 1e-3;
 
-// A disc that the eye meets half way, among others; `along` is the path to it.
+// A disc that the eye meets halfway, among others; `along` is the path to it.
 Stage makeMeeting(Disc disc, const glm::dvec3& meeting, const glm::dvec3& along) {
     StageBuilder stage;
     stage.addWall();

@@ -14,7 +14,7 @@ namespace {
 constexpr Side kDominant = kLeft;
 constexpr int kMarginPx = 8;  // small pictures have small borders
 
-// The twin's pictures of a stage, full ones made once.
+// The twin's pictures of a stage; full renders are made only once.
 class TwinPictures {
 public:
     explicit TwinPictures(const Stage& stage) : stage_(stage) { settings_.near = stage.near; }

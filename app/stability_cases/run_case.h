@@ -22,7 +22,7 @@ struct PictureScore {
     double other_tiles = 0.0;
     std::uint64_t not_finite = 0;  // of the picture's values and of the dominant eye's depths
     bool repeats = false;          // the second run gave the same bytes
-    bool passes = false;           // its bound, is finite and repeats
+    bool passes = false;           // keeps to its bound, is finite and repeats
 };
 
 struct CaseScore {
@@ -52,7 +52,7 @@ struct SequenceScore {
     };
     std::vector<Frame> frames;
     double psnr_db = 0.0;   // of the worst
-    double drift_db = 0.0;  // how much worse the last of them are than the first, a third each
+    double drift_db = 0.0;  // how much worse the last third of them is than the first third
     // How far any value lies beyond what the full render has in the 7x7 pixels around it.
     double beyond = 0.0;
     double bias = 0.0;  // how far the mean of all values is off, at most
@@ -74,7 +74,7 @@ public:
 private:
     StereoFrame& show(const Stage& stage);
     StereoFrame& showIn(std::optional<StereoFrame>& frame);
-    // So many frames; `after` each, with its number and its eyes.
+    // Plays this many frames, and calls `after` with the number and the eyes of each.
     void play(const Sequence& sequence, int frames,
               const std::function<void(int, const std::array<Eye, 2>&)>& after);
 

@@ -1,4 +1,4 @@
-// Running sequences: each frame from the ones before, and beside some of them the full render.
+// Runs sequences: each frame is made from the previous ones, and some are compared with a full render.
 #include "app/stability_cases/score_picture.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::vector<glm::dvec4> coloursOf(const Image& image) {
     return colours;
 }
 
-// The least and the greatest value of each channel over so many pixels on either side along an axis.
+// The least and the greatest value of each channel over this many pixels on either side along an axis.
 void widen(std::vector<glm::dvec4>& least, std::vector<glm::dvec4>& most, glm::ivec2 size, glm::ivec2 axis,
            int reach) {
     const std::vector<glm::dvec4> least_before = least, most_before = most;

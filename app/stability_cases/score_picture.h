@@ -1,4 +1,4 @@
-// Compares a picture with the one that it ought to be.
+// Compares a picture with what it ought to be.
 #pragma once
 
 #include "app/stability_cases/run_case.h"
@@ -7,7 +7,7 @@ namespace binosplat::stability {
 
 std::uint64_t countNotFinite(const Image& image);
 
-// Of red, green, blue and alpha. `counts`: which tiles do; empty: all.
+// Compares red, green, blue and alpha. `counts`: which tiles count; empty: all.
 void compareWithTwin(PictureScore& score, const Image& image, const std::vector<glm::dvec4>& twin,
                      const std::vector<bool>& counts = {});
 

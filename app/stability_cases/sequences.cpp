@@ -25,7 +25,7 @@ Eyes headAt(const Stage& stage, const glm::dvec3& place, double yaw_rad = 0.0) {
     return stereoPair(middle, 0.063);
 }
 
-// 3 mm a frame, which is 0.27 m/s at 90 frames a second, and a turn of 10 degrees a second.
+// 3 mm per frame, which is 0.27 m/s at 90 frames per second, and a turn of 10 degrees per second.
 Eyes walk(const Stage& stage, int frame) {
     return headAt(stage, static_cast<double>(frame) * glm::dvec3(0.0028, 0.0006, 0.0008), 0.002 * frame);
 }
@@ -34,7 +34,7 @@ Eyes walkAndStop(const Stage& stage, int frame) { return walk(stage, std::min(fr
 Eyes tremble(const Stage& stage, int frame) {
     return headAt(stage, glm::dvec3(0.0), frame % 2 * 0.25 / stage.middle.intrinsics.fx);
 }
-// At 90 frames a second.
+// At 90 frames per second.
 Eyes turnFast(const Stage& stage, int frame) {
     return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0);
 }

@@ -1,4 +1,4 @@
-// Discs from an eye's axes to the world.
+// Places discs that are given in an eye's axes.
 #include "app/stability_cases/stage_builder.h"
 
 #include <cmath>
@@ -42,7 +42,8 @@ void StageBuilder::addWall(double depth) {
     Random random(99);
     for (int j = -6; j <= 6; ++j) {
         for (int i = -9; i <= 9; ++i) {
-            // Uneven by a twentieth: which of two discs at one depth is in front would be rounding's choice.
+            // Uneven by a twentieth, or rounding would decide which of two discs at the same depth is in
+            // front.
             add({.centre = depth * random.between(0.975, 1.025) * glm::dvec3(0.1 * i, 0.1 * j, 1.0),
                  .scale = glm::dvec2(0.06 * depth),
                  .opacity = 0.95,

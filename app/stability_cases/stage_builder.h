@@ -41,8 +41,8 @@ public:
     explicit StageBuilder(glm::uvec2 size_px = kSizePx, double fov_x_deg = 60.0,
                           const glm::dvec3& position_world = {0.3, -0.2, 0.1});
     void add(const Disc& disc);
-    // A wall of overlapping opaque discs `depth` before the eye, patterned, as wide as the view and some
-    // more.
+    // A wall of overlapping opaque discs `depth` in front of the eye, patterned, and a little wider than the
+    // view.
     void addWall(double depth = 4.0);
     // Discs of all directions between the eye and the wall.
     void addClutter(int count, unsigned seed);
@@ -60,7 +60,7 @@ private:
     std::vector<float> thicknesses_;
 };
 
-// A wall and some clutter before it.
+// A wall with some clutter in front of it.
 StageBuilder makeDiscRoom(glm::uvec2 size_px = kSizePx);
 // Somewhere in view between the wall and the eye.
 Disc placeDisc(Random& random, double nearest = 0.8);
@@ -68,7 +68,7 @@ Disc placeDisc(Random& random, double nearest = 0.8);
 // Of a disc that is seen: its normal is all but perpendicular to the line of sight, and to the line between
 // the eyes.
 void layAlongSight(Disc& disc, double angle_rad);
-// Any directions.
+// In any direction.
 void turnAnyhow(Disc& disc, Random& random);
 
 }  // namespace binosplat::stability

@@ -1,4 +1,4 @@
-// A scene in numbers: for `info`, for the report, and for choosing which passes to leave out.
+// A scene in numbers: for `info`, for the report, and for deciding which passes are not needed.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -22,13 +22,13 @@ struct SceneSummary {
     // Quantiles 0, 0.05, 0.5, 0.95, 1 over the splats; scale is the longer axis, aspect the shorter over the
     // longer.
     std::array<float, 5> opacity_quantiles{}, scale_quantiles{}, aspect_quantiles{};
-    std::uint64_t invisible_splats = 0;  // opacity under 1/255: they never reach a pixel
+    std::uint64_t invisible_splats = 0;  // opacity under 1/255: never visible
     std::uint64_t host_bytes = 0;        // of the scene's arrays
     std::vector<std::string> left_out;   // what rendering this scene does not need, one phrase each
 };
 inline constexpr std::array<double, 5> kSummaryQuantiles{0.0, 0.05, 0.5, 0.95, 1.0};
 
-// The values at these shares of their order, 0 to 1; zeros if there are none. Reorders `values`.
+// The quantiles of `values` at these shares, 0 to 1; zeros if there are no values. Reorders `values`.
 template <std::size_t N>
 std::array<float, N> findQuantiles(std::vector<float>& values, const std::array<double, N>& shares) {
     std::array<float, N> quantiles{};
@@ -41,7 +41,7 @@ std::array<float, N> findQuantiles(std::vector<float>& values, const std::array<
     return quantiles;
 }
 
-// `notes` adds what loading already left out.
+// `notes` adds what was already skipped while loading.
 SceneSummary describeScene(const Scene& scene, const LoadNotes* notes = nullptr);
 
 // "1.5,20,-3": with four digits, or enough for thousandths of `size`.

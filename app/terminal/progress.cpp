@@ -1,4 +1,4 @@
-// One line on a terminal for work that takes longer than a second.
+// A line on a terminal for work that takes longer than a second.
 #include "app/terminal/progress.h"
 
 #include "app/terminal/interrupt.h"

@@ -1,5 +1,5 @@
-// One line on a terminal for work that takes longer than a second; nothing if stderr is not a terminal. Work
-// that reports its progress can also be interrupted there.
+// A line on a terminal for work that takes longer than a second; nothing if stderr is not a terminal. Work
+// that reports its progress can also be interrupted at that point.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ public:
     // Cheap enough for inner loops: the line is drawn at most ten times a second.
     void show(double share);
 
-    // The same as a function, for as long as the line lives.
+    // The same as a function, valid for as long as the line exists.
     [[nodiscard]] std::function<void(double)> progress() {
         return [this](double share) { show(share); };
     }

@@ -1,4 +1,4 @@
-// `binosplat view` of a build without OpenXR.
+// `binosplat view` in a build without OpenXR.
 #include "app/view/view.h"
 
 #include "engine/error.h"

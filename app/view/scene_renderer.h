@@ -25,13 +25,13 @@ struct FrameViews {
     Pose room_from_head;
     std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
     std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
-    // What the frame's pictures show, as the runtime is told.
+    // What the frame's pictures show, in the form that the runtime is told.
     std::array<xr::EyeView, 2> pictures;
 };
 
 class SceneRenderer {
 public:
-    // `format` is the format of every session's images; the rest outlives this.
+    // `format` is the format of every session's images; the rest must outlive this.
     SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options,
                   const FrameLog& log, vk::Format format);
 
@@ -39,21 +39,21 @@ public:
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const {
         return sizePx(settings.resolution_scale);
     }
-    // Makes the headset's images as large as the wearer wants, or larger if axes stay, and applies the
-    // governor to the wearer's settings, within them. Throws Error if images of another size fail; then they
-    // keep their size.
+    // Makes the headset's images as large as the wearer wants, or larger if axes stay, and lets the governor
+    // adjust the wearer's settings, never above them. Throws Error if images of another size cannot be made;
+    // then they keep their size.
     void govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
-    // The runtime refuses depth after all; false: depth was off already.
+    // For a runtime that turned out to refuse depth; returns false if depth was already off.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show of the scene that is drawn, and sets the pictures of `views`. Throws
-    // Error if memory is short; then nothing is shown until this succeeds with less.
+    // Prepares what render() will show of the scene, and sets the pictures of `views`. Throws Error if memory
+    // is short; then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
                  const ViewSettings& settings, FrameViews& views);
-    // See ShownScene; once that is prepared.
+    // See ShownScene; call this once that is prepared.
     void meetOther(const ConnectedHeadset& headset, ShownScene& shown) const;
-    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for
-    // it. With a `window`, one eye's picture is kept for it.
+    // Renders and presents what was prepared, in one submission with what `record_panel` records, without
+    // waiting for it. With a `window`, one eye's picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings,
                 MirrorWindow* window, const std::function<void(Commands&)>& record_panel);
 
@@ -68,7 +68,7 @@ public:
     }
     // The last frame that the device has finished. No counters before a scene's first frame.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
-    // For the prepared pictures, and for what their eyes see of them.
+    // The eyes of the prepared pictures, and those of what is seen of them.
     [[nodiscard]] const std::vector<Eye>& pictures() const { return eyes_; }
     [[nodiscard]] const std::vector<Eye>& views() const { return seen_; }
     // True if the eyes saw background in the last two frames because a list was full.
@@ -80,8 +80,8 @@ public:
         splat_budget_.reset();
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
-    // For each frame that will be shown, before the panel. Says why if a frame was late: once, until none has
-    // been for a second.
+    // For each frame that will be shown, before the panel. If a frame was late, says why; only once, until
+    // none has been late for a second.
     void meetDisplay(const xr::Session& session);
     // How many frames reach the wearer, and their resolution.
     [[nodiscard]] ShownRate rate() const;
@@ -151,11 +151,11 @@ private:
     std::uint64_t governed_count_ = 0;
     std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;
-    // Frames, as last said: of the scene shown, and of the other one.
+    // Frames that were cut short, as last reported: for the scene that is shown, and for the other one.
     std::array<std::uint64_t, 2> cut_short_{};
     bool was_cut_short_ = false;
     FrameResult last_;
-    std::array<std::uint32_t, 2> hidden_tiles_{};  // as last said
+    std::array<std::uint32_t, 2> hidden_tiles_{};  // as last reported
     bool takes_depth_ = true;
 };
 

@@ -1,4 +1,4 @@
-// Running glslang's command line tool as the build does.
+// Runs glslang's command line tool as the build does.
 #include "app/view/shader_reload.h"
 
 #include "engine/error.h"

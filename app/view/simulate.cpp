@@ -62,7 +62,7 @@ void simulateHeadset(ViewOptions& options) {
         check(!error, "--out: {} cannot be made ({})", options.out.string(), error.message());
         setEnvironment("SIMULATED_OPENXR_OUT", fs::absolute(options.out).string());
     } else if (environment("SIMULATED_OPENXR_CLOCK").empty()) {
-        setEnvironment("SIMULATED_OPENXR_CLOCK", "real");  // somebody watches
+        setEnvironment("SIMULATED_OPENXR_CLOCK", "real");  // somebody is watching
     }
 }
 

@@ -49,7 +49,7 @@ ViewSettings startSettings(const ViewOptions& options, const DeviceDefaults& dev
 // first call opens the window.
 void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& window) {
     if (!window) {
-        FrameLog::print(runtime + " has no headset yet: waiting for it (Ctrl-C ends)");
+        FrameLog::print(runtime + " has no headset yet: waiting for it (Ctrl-C to stop)");
         window = std::make_unique<WaitingWindow>();
     }
     stopIfInterrupted();

@@ -13,7 +13,7 @@ namespace binosplat {
 
 namespace {
 
-// How often to look whether the session has begun to run.
+// How often to check whether the session has begun to run.
 constexpr std::chrono::milliseconds kIdle(5);
 
 }  // namespace

@@ -25,7 +25,7 @@ namespace binosplat {
 
 class Viewer {
 public:
-    // `instance` and `context` outlive the viewer. Begins to load the scene. Its frames are shown in
+    // `instance` and `context` must outlive the viewer. Begins to load the scene. Frames are shown in
     // `window`, too, if it is given.
     Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance,
            const Context& context, EventWindow* window);
@@ -91,9 +91,9 @@ private:
     // While the ruler is open, a trigger says where the ray meets the scene.
     void measure(const std::array<xr::Hand, 2>& hands);
     void showPanel();
-    // A small picture of the scene as it was last seen is kept for the list of scenes: of what a frame has
-    // copied, for which the scene that comes next is held back some frames, or of the last frame, for which
-    // the last of these waits.
+    // A small picture of the scene as it was last seen is kept for the list of scenes. It is made either from
+    // what a frame has copied, for which the next scene is held back by some frames, or from the last frame,
+    // which is then waited for.
     [[nodiscard]] bool hasKeptPicture();
     void recordCopy(Commands& commands);
     void keepPictureAtOnce();
@@ -107,7 +107,7 @@ private:
     void sayPicture(const std::optional<std::string>& outcome);
     // In the log and on the panel.
     void say(const std::string& message);
-    // As a line before the eyes, for some seconds, while the panel is hidden; otherwise what one does first.
+    // As a line in front of the eyes, for some seconds, while the panel is hidden; otherwise the first steps.
     void showMessage(RoomSight& sight, double step_seconds);
     void sayChange();
     void keepPreferences(double step_seconds, bool at_once);
@@ -130,7 +130,7 @@ private:
     Vignette vignette_;
     Fade fade_;
     std::string message_;           // to be shown in front of the eyes
-    double message_seconds_ = 0.0;  // that are left of the one shown
+    double message_seconds_ = 0.0;  // left for the one shown
     bool is_new_view_ = false;      // another scene or another origin of the room, in this frame
     GazeFollower gaze_;
     Commands commands_;

@@ -17,7 +17,7 @@ namespace {
 // While the scene loads, unless a background is set.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr double kMessageSeconds = 6.0;
-// A tour rests longer than in a window, where the ways between viewpoints take their time: for five seconds.
+// A tour stays longer than in a window, where moving between viewpoints takes time: for five seconds.
 constexpr double kTourPace = ViewpointList::kRestSeconds / 5.0;
 
 }  // namespace
@@ -81,7 +81,7 @@ void Viewer::drawFrame() {
         viewpoints_.endTour();
         goTo(viewpoints_.goBy(step));
     }
-    // A wearer is not moved smoothly: the tour jumps, with a fade.
+    // A wearer must not be moved smoothly, so the tour jumps, with a fade.
     goTo(viewpoints_.pass(kTourPace * step_seconds, true));
     if (scenes_.other() != nullptr) {
         showOther();
@@ -97,7 +97,7 @@ void Viewer::drawFrame() {
     panel_.status().state.clear();
     panel_hangs_ = state_.settings().panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
-    // Meanwhile the runtime knows better where the eyes will be.
+    // By now the runtime knows better where the eyes will be.
     if (std::optional<FrameViews> later = locate()) {
         later->gazes = views.gazes;
         views = *later;
@@ -120,7 +120,7 @@ void Viewer::drawFrame() {
     } else {
         renderWaiting();
     }
-    // What was cut short comes out of the dark, too.
+    // After a frame that was cut short, the view fades in, too.
     const bool is_new = std::exchange(is_new_view_, false) || renderer_.wasCutShort();
     fade_.update(state_.sceneFromRoom(), room_from_head_, is_new, step_seconds);
     headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
@@ -209,7 +209,7 @@ void Viewer::probeScene(double feet_m) {
         paths[kGroundPath] = groundAhead(room_from_head_, feet_m);
     }
     for (const int h : {kLeft, kRight}) {
-        if (!state_.settings().hands) { break; }  // hidden hands point at nothing
+        if (!state_.settings().hands) { break; }  // hidden hands do not point
         if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) {
             paths[static_cast<std::size_t>(h)] = probeRay(*aim);
         }
@@ -293,8 +293,8 @@ void Viewer::submitFrame(const FrameViews& views) {
         return false;
     };
     if (isTaken(SIZE_MAX)) { return; }
-    // Which layer it refuses, the runtime does not say: the things are left out one after the other until it
-    // takes the rest.
+    // The runtime does not say which layer it refuses, so the things are left out one after another until it
+    // accepts the rest.
     for (std::size_t most = things.size(); most-- > 0;) {
         if (!isTaken(most)) { continue; }
         instance_.troubles().add(fmt::format(

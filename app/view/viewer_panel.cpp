@@ -7,7 +7,7 @@ namespace binosplat {
 
 namespace {
 
-// How often the window is drawn while no frames are.
+// How often the window is drawn while there are no frames.
 constexpr std::chrono::milliseconds kWindowAlone(16);
 
 }  // namespace

@@ -10,9 +10,9 @@ namespace binosplat {
 
 namespace {
 
-// If the scene has no known floor: its distance below a standing person's eyes.
+// If the scene's floor is unknown: its assumed distance below a standing person's eyes.
 constexpr double kUsualEyesMetres = 1.6;
-// A scene that was seen for less than a third of a second was only passed on the way.
+// A scene that was shown for less than a third of a second was only passed through.
 constexpr std::uint64_t kLeastFramesSeen = 30;
 
 }  // namespace

@@ -37,15 +37,15 @@ struct WarpInputs {
     const ShownTiles& target_shown;
     MovingWords words;
     glm::vec3 background;
-    bool target_gaze;  // its eye's gaze is known; otherwise all tiles count alike
+    bool target_gaze;  // its eye's gaze is known; otherwise all tiles count equally
 };
 
-// True if resample moves the source's pixels itself, row by row: then reproject does not run, and arrivals
+// True if resample moves the source's pixels itself, row by row; reproject then does not run, and arrivals
 // are not kept in memory.
 inline bool movesRows(bool rectified, const WarpBuffers& warp) { return rectified && warp.sharesRows(); }
 
-// Runs all of them: writes the target's colours, except in the tiles that are finally listed, and its depths,
-// if it has memory for them. Hidden tiles become background.
+// Runs all of them: writes the target's colours, except in the tiles that are listed at the end, and its
+// depths, if it has memory for them. Hidden tiles become background.
 void recordWarp(PassKernels& kernels, Commands& commands, const WarpInputs& in);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// builtin:atelier: the room put together, and where to stand in it.
+// builtin:atelier: puts the room together, and says where to stand in it.
 #include "engine/builtin/atelier.h"
 
 #include "engine/builtin/builtin.h"

@@ -1,4 +1,4 @@
-// The parts of builtin:atelier, one function per file's idea.
+// The parts of builtin:atelier.
 #pragma once
 
 #include "engine/builtin/patch.h"

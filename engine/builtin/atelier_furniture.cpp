@@ -9,7 +9,7 @@ namespace binosplat::builtin {
 
 namespace {
 
-// Grain along x or z, by the longer side the caller names.
+// Grain along x or z, whichever the caller says is the longer side.
 MaterialAt wood(const glm::vec3& dark, const glm::vec3& light, bool along_x, std::uint32_t seed) {
     return [=](const glm::vec3& p, const glm::vec2&) {
         const glm::vec2 at =
@@ -90,7 +90,8 @@ void addBooks(Draft& draft, float shelf, float z0, float z1, std::uint32_t seed)
             return Material{glm::mix(cover, glm::vec3(0.62f, 0.48f, 0.20f), 0.8f * gilt), glm::vec3(0.0f),
                             0.97f};
         };
-        // Only spine and top are made: the sides touch each other, and the back is against the wall.
+        // Only the spine and top are made, since the sides touch each other, and the back is against the
+        // wall.
         const glm::vec3 low(-2.95f, shelf - height, z), high(-2.95f + 2.0f * depth, shelf, z + 0.96f * thick),
             away(0.0f, -1.5f, 0.5f * (low.z + high.z));
         const glm::vec3 x(high.x - low.x, 0.0f, 0.0f), y(0.0f, height, 0.0f),

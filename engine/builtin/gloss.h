@@ -7,7 +7,7 @@
 
 namespace binosplat::builtin {
 
-// The 16 real SH at a unit direction, in the order and with the signs of 3DGS/2DGS trainings.
+// The 16 real SH at a unit direction, in the order and with the signs used in 3DGS and 2DGS training.
 std::array<float, 16> evaluateSh(const glm::vec3& direction);
 
 // SH over viewing directions (from the eye to the splat) of the reflection, in a mirror with this normal, of

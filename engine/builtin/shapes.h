@@ -25,7 +25,7 @@ void addQuad(Draft& draft, const Quad& quad, const MaterialAt& material, float d
 void addQuadAround(Draft& draft, const Quad& quad, std::span<const glm::vec4> holes,
                    const MaterialAt& material, float detail);
 
-// A box turned by yaw about the vertical, and an occluder like it.
+// A box turned by yaw about the vertical axis, and an occluder of the same shape.
 struct Box {
     glm::vec3 centre, half;
     float yaw_rad = 0.0f;
@@ -33,11 +33,11 @@ struct Box {
 };
 void addBox(Draft& draft, const Box& box, const MaterialAt& material, float detail, bool occludes = true);
 
-// From an ellipsoid (boxiness 2) to a rounded box (6), and an occluder like it.
+// From an ellipsoid (boxiness 2) to a rounded box (6), and an occluder of the same shape.
 void addCushion(Draft& draft, const Box& box, float boxiness, const MaterialAt& material, float detail,
                 bool occludes = true);
 
-// The profile (radius, height above `foot`) turned about the vertical; corners are smoothed.
+// The profile (radius, height above `foot`) turned about the vertical axis; corners are smoothed.
 Patch& addRevolution(Draft& draft, const glm::vec3& foot, std::vector<glm::vec2> profile,
                      const MaterialAt& material, float detail);
 

@@ -1,4 +1,4 @@
-// Numbers in order: a cluster is a range of them, and its mean comes from the difference of two sums.
+// Works on sorted numbers: a cluster is a range of them, and its mean comes from the difference of two sums.
 #include "engine/files/codebook.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ std::vector<float> findValues(std::span<const float> numbers, std::size_t size) 
     std::vector<std::size_t> ends = startEnds(sorted, size);
     for (int iteration = 0; iteration < kIterations; ++iteration) {
         for (std::size_t k = 0, begin = 0; k < size; begin = std::max(begin, ends[k]), ++k) {
-            // A cluster without numbers waits where the next one begins.
+            // A cluster without numbers stays where the next one begins.
             values[k] =
                 begin < ends[k]
                     ? static_cast<float>((sums[ends[k]] - sums[begin]) / static_cast<double>(ends[k] - begin))

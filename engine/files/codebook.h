@@ -10,9 +10,9 @@ namespace binosplat {
 
 class Codebook {
 public:
-    // The values nearest to `numbers` by squared distance: Lloyd's algorithm along one axis. If there are no
-    // more different numbers than values, they are kept as they are. `apart`, less than all numbers, is the
-    // first value.
+    // The values nearest to `numbers` by squared distance, by Lloyd's algorithm along one axis. If there are
+    // no more distinct numbers than values, they are kept as they are. `apart`, which must be less than all
+    // numbers, is the first value.
     explicit Codebook(std::span<const float> numbers, std::optional<float> apart = {});
 
     // Ascending; the last one fills the rest.

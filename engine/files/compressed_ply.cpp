@@ -34,7 +34,7 @@ struct Fields {
     std::size_t row_bytes = 0;
 };
 
-// All of `names` must be present, once, with the format's type.
+// Each of `names` must be present exactly once, with the format's type.
 Fields findFields(const InputFile& file, const ply::Element& element, ply::Type type, const char* type_name,
                   std::span<const std::string> names) {
     Fields fields;
@@ -200,7 +200,7 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
     const ply::Header header = ply::readHeader(file);
     const ChunkLayout layout = planElements(file, header);
     const std::vector<Bounds> bounds = readBounds(file, layout);
-    // SH come after all words, so these wait in memory.
+    // SH come after all words, so the words wait in memory.
     std::vector<Words> all_words(layout.splats);
     for (std::uint64_t splat = 0; splat < layout.splats; ++splat) {
         const std::span<const std::byte> row = readRow(file, layout.words, "vertex", splat);

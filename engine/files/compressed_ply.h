@@ -1,4 +1,4 @@
-// PlayCanvas compressed PLY: 16 bytes a splat, relative to the bounds of its chunk of 256 splats.
+// PlayCanvas compressed PLY: 16 bytes per splat, relative to the bounds of its chunk of 256 splats.
 #pragma once
 
 #include "engine/files/input_file.h"

@@ -257,7 +257,7 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     for (const GltfSplats& part : document.parts) {
         total += part.count();
         check(total <= kMostSplatsPerByte * document.bytes,
-              "{}: places {} splats and more, expected at most {} for each of its {} bytes", file.name(),
+              "{}: places {} or more splats, expected at most {} for each of its {} bytes", file.name(),
               total, kMostSplatsPerByte, document.bytes);
     }
     const bool logarithms = holdsLogarithms(document);

@@ -14,7 +14,7 @@ namespace binosplat {
 
 class GltfBuffer {
 public:
-    // `size_bytes` of `file` from `offset` on, which must exist. The file outlives the buffer.
+    // `size_bytes` of `file` from `offset` on, which must exist. The file must outlive the buffer.
     GltfBuffer(const InputFile& file, std::uint64_t offset, std::uint64_t size_bytes)
         : file_(&file), offset_(offset), size_bytes_(size_bytes) {}
     explicit GltfBuffer(std::unique_ptr<InputFile> file);

@@ -1,4 +1,5 @@
-// A glTF checked as a whole: the splats that its nodes place, in columns whose bytes are known to exist.
+// A glTF that has been checked as a whole: the splats that its nodes place, in columns whose bytes are known
+// to exist.
 #pragma once
 
 #include "engine/files/gltf_buffers.h"
@@ -17,15 +18,15 @@ namespace binosplat {
 // One attribute of all splats of a primitive.
 class GltfColumn {
 public:
-    // `components` is the accessor's. Its bytes are within the buffer, which outlives the column.
+    // `components` is the accessor's. Its bytes are within the buffer, which must outlive the column.
     GltfColumn(const GltfBuffer& buffer, std::uint64_t offset, std::uint64_t stride,
                const gltf::Accessor& accessor)
         : buffer_(&buffer), offset_(offset), stride_(stride), accessor_(accessor) {}
 
     [[nodiscard]] std::uint64_t count() const { return accessor_.count; }
     [[nodiscard]] int components() const { return accessor_.components; }
-    // The values of `rows` splats from `first` on, `components` each; integers as they are or scaled to -1 to
-    // 1, as the accessor says.
+    // The values of `rows` splats from `first` on, `components` each; integers are kept or scaled to -1 to 1,
+    // as the accessor says.
     void read(std::uint64_t first, std::size_t rows, std::vector<float>& values) const;
 
 private:
@@ -42,7 +43,7 @@ struct GltfSplats {
     std::vector<GltfColumn> sh;
     std::optional<GltfColumn> colour;
     glm::dmat4 world_from_node{1.0};
-    bool is_linear = false;  // its colours are light; otherwise display-encoded
+    bool is_linear = false;  // its colours are linear; otherwise display-encoded
 
     [[nodiscard]] std::uint64_t count() const { return position.count(); }
 };
@@ -52,7 +53,7 @@ struct GltfDocument {
     std::vector<GltfSplats> parts;
     std::uint64_t bytes = 0;   // of the file and all buffers
     int sh_degree = 0;         // the highest of the parts'
-    bool is_linear = false;    // most splats' colours are light, and the scene's will be
+    bool is_linear = false;    // most splats' colours are linear, and the scene's will be
     bool by_distance = false;  // the blending order
     std::vector<std::string> notes;
 };

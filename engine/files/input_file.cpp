@@ -69,7 +69,8 @@ void InputFile::open() {
         std::array<char, kLfsPointerStart.size()> start{};
         requireNoLfsPointer({start.data(), readAt(0, std::as_writable_bytes(std::span(start)))}, name_);
     }
-    // One byte more than a small file, so that its last line does not seem too long for filling the buffer.
+    // One byte more than a small file, so that its last line does not seem too long because it fills the
+    // buffer.
     const auto buffer_bytes = static_cast<std::size_t>(
         std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
     // Stays unused if the file is read in parts.

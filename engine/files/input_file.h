@@ -28,19 +28,20 @@ class InputFile {
 public:
     // Throws Error if `path` is missing, a directory, not a regular file, not readable or a Git LFS pointer.
     explicit InputFile(const std::string& path);
-    // A file that messages call `name`; the other files of its scene come from `others`, which outlive it.
+    // A file that messages call `name`; the other files of its scene come from `others`, which must outlive
+    // it.
     InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others);
-    // A file in a folder of its own, which is removed with it; messages call it `name`.
+    // A file in a folder of its own, which is removed along with it; messages call it `name`.
     InputFile(TemporaryFolder folder, const std::string& file, std::string name);
     ~InputFile();
 
     [[nodiscard]] const std::string& name() const { return name_; }
     // Its path on the disk.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    // Null: they are beside it, on the disk.
+    // Null if they are next to it, on the disk.
     [[nodiscard]] SceneFiles* others() const { return others_; }
     void takeOthers(std::unique_ptr<SceneFiles> others);
-    // Opens it once more, while this one exists or the others that it was given do.
+    // Opens it once more, as long as this one exists or the others that it was given do.
     [[nodiscard]] std::function<std::unique_ptr<InputFile>()> again() const;
     [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
     [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
@@ -48,7 +49,7 @@ public:
         return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0;
     }
 
-    // Throws Error if the file has been written to since it was opened, since what was read may be half old
+    // Throws Error if the file has been written to since it was opened, because what was read may be half old
     // and half new. A file that was removed or replaced is read to its end as it was.
     void requireUnchanged() const;
 

@@ -13,18 +13,18 @@
 namespace binosplat {
 
 // `file` is the name for messages, `expected` what it should be. Throws Error if the text is not JSON or is
-// nested deeper than `max_depth`, so that code which walks through it or quotes it cannot overflow the stack.
+// nested deeper than `max_depth`, so that code that walks through it or quotes it cannot overflow the stack.
 nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected,
                          int max_depth = 64);
 
 // True if a text that starts like this is an object.
 bool startsObject(std::string_view start);
 
-// A value of a document that outlives it. A request that the value does not meet throws Error.
+// A value in a document, which must outlive this. A request that the value does not meet throws Error.
 struct JsonNode {
     const nlohmann::json& value;
     const std::string& file;
-    std::string key = {};  // from the document on; empty: the document itself
+    std::string key = {};  // starting from the document; empty: the document itself
 
     [[nodiscard]] std::string place() const { return key.empty() ? file : file + ": " + key; }
     // True if it is an object with a `name` that is not null.
@@ -37,7 +37,7 @@ struct JsonNode {
     [[nodiscard]] float number() const;         // finite
     [[nodiscard]] std::uint64_t count() const;  // also as 608.0
     [[nodiscard]] std::string text() const;
-    // A text with backslashes replaced by slashes, and without "./" at its front.
+    // A text with backslashes replaced by slashes, and without "./" at the beginning.
     [[nodiscard]] std::string filePath() const;
     [[nodiscard]] bool flag() const;
 };

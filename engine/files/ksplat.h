@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// True if the file begins with such a header: the format has no magic number.
+// True if the file begins with such a header; the format has no magic number.
 bool isKsplat(InputFile& file);
 
 Scene readKsplat(InputFile& file, LoadNotes& notes, const Progress& progress);

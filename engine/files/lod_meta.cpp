@@ -81,7 +81,8 @@ void readLeaf(const JsonNode& node, LodLeaf leaf, LodMeta& meta) {
     for (const auto& [key, value] : lods.value.items()) {
         const JsonNode entry = lods.at(key);
         const std::optional<std::size_t> level = readLevel(key, meta.levels.size());
-        check(level.has_value(), "{}: is no level, expected 0 to {}", entry.place(), meta.levels.size() - 1);
+        check(level.has_value(), "{}: is not a level, expected 0 to {}", entry.place(),
+              meta.levels.size() - 1);
         const JsonNode file = entry.at("file");
         check(file.count() < meta.files.size(), "{}: is {}, expected less than the {} of filenames",
               file.place(), file.count(), meta.files.size());

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Anything that grows more is meant to fill the disk, as with SPZ.
+// Anything that grows more than this is meant to fill the disk, as with SPZ.
 constexpr std::uint64_t kMostGrowth = 256, kAlwaysAllowedBytes = 65536;
 constexpr std::uint64_t kUnpackedPieceBytes = std::uint64_t{1} << 20;
 constexpr std::size_t kMostNames = 3;  // in a message

@@ -13,7 +13,7 @@ namespace binosplat {
 
 // True if a file's name ends like a scene's, packed or not.
 bool hasSceneName(const std::filesystem::path& file);
-// False if the extension is another one, so that the file need not be opened. True for names that say
+// False if the extension is a different one, so that the file need not be opened. True for names that say
 // nothing, such as 1 and frame.0001.
 bool mayHaveScene(const std::filesystem::path& file);
 
@@ -21,13 +21,13 @@ bool mayHaveScene(const std::filesystem::path& file);
 bool isPacked(InputFile& file);
 
 struct Unpacking {
-    std::uint64_t first_bytes = ~std::uint64_t{0};  // anything beyond is not unpacked
+    std::uint64_t first_bytes = ~std::uint64_t{0};  // anything after that is not unpacked
     DiskRoom::Measure room = roomIn;
 };
 
-// The scene in a packed file, as a file of its own; files that it names beside it are looked up in its
-// archive. Throws Error for an archive that is broken or encrypted, or holds no scene or several, and for a
-// scene that is more than 256 times as long as its packed bytes, or does not fit where temporary files are.
+// The scene in a packed file, as a file of its own; other files that it names are looked up in its archive.
+// Throws Error for an archive that is broken or encrypted, or contains no scene or several, and for a scene
+// that is more than 256 times as long as its packed bytes, or does not fit where temporary files are.
 std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress,
                                        const Unpacking& how = {});
 // A scene's file, unpacked if it is packed.

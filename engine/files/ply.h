@@ -1,4 +1,4 @@
-// Reads and writes PLY files of Gaussian splats from 2DGS and 3DGS trainings.
+// Reads and writes PLY files of Gaussian splats as the training of 2DGS and 3DGS makes them.
 #pragma once
 
 #include "engine/files/input_file.h"
@@ -20,8 +20,8 @@ bool isPly(InputFile& file);
 // For a point cloud, a mesh or anchors, throws an Error that says so.
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
-// The same in parts of about as many splats each, one after the other, for a scene larger than the memory. A
-// part has only the bands that its own splats use. The notes are about all parts.
+// The same in parts of about `part_splats` splats each, one after the other, for a scene larger than the
+// memory. A part has only the bands that its own splats use. The notes are about all parts.
 void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes,
                   const std::function<void(Scene)>& take);
 

@@ -1,4 +1,4 @@
-// Common to the compressed formats: small integers back to stored attributes (see scene_builder.h).
+// For all compressed formats: turns small integers back into stored attributes (see scene_builder.h).
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ inline float storedScale(float scale) { return scale == 0.0f ? -200.0f : std::lo
 // The f_dc of a displayed colour of 0 to 1.
 inline float storedColour(float colour) { return (colour - 0.5f) / kShConstant; }
 
-// A unit quaternion (w, x, y, z) whose largest component is positive and left out; the three others keep
+// A unit quaternion (w, x, y, z) whose largest component is positive and not stored; the three others keep
 // their order.
 inline std::array<float, 4> fromSmallestThree(std::size_t largest, const std::array<float, 3>& others) {
     std::array<float, 4> quaternion{};

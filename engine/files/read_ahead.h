@@ -14,8 +14,8 @@
 
 namespace binosplat {
 
-// GCC 12's std::counting_semaphore for Windows may sleep on although it was released: it looks at the count
-// before it takes the lock under which it sleeps.
+// GCC 12's std::counting_semaphore for Windows may keep sleeping although it was released: it looks at the
+// count before it takes the lock under which it sleeps.
 class BatchCount {
 public:
     explicit BatchCount(std::ptrdiff_t count) : count_(count) {}
@@ -36,8 +36,9 @@ private:
     std::ptrdiff_t count_;
 };
 
-// Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of their consumer. A
-// scene with few rows is filled on the consumer's thread, since starting another would take longer.
+// Blocks with `rows` rows in total, filled in order on a thread of their own, a little ahead of their
+// consumer. A scene with few rows is filled on the consumer's thread, since starting another would take
+// longer.
 class ReadAhead {
 public:
     struct Block {
@@ -55,7 +56,7 @@ public:
     [[nodiscard]] const Block* next();
 
 private:
-    // Handed over together: waking a thread costs as much as a few blocks.
+    // Blocks that are handed over together, since waking a thread costs as much as a few blocks.
     struct Batch {
         std::array<Block, 8> blocks;
         std::size_t count = 0;

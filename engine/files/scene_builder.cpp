@@ -1,4 +1,4 @@
-// Joins blocks to a scene, and notes what was odd about them.
+// Joins blocks into a scene, and notes anything unusual about them.
 #include "engine/files/scene_builder.h"
 
 #include "engine/error.h"
@@ -72,8 +72,8 @@ void SceneBuilder::append(const StoredBlock& block, const ActiveBlock& active) {
 
 namespace {
 
-// A splat's coefficients in the scene's order: by coefficient, channels together. The file has `in_file` per
-// channel.
+// A splat's coefficients in the scene's order: by coefficient, with channels together. The file has `in_file`
+// per channel.
 template <int kCoefficients>
 void gatherSh(const StoredBlock& block, std::size_t row, int in_file, float* target) {
     const float* rest = block.rest(row);
@@ -94,7 +94,7 @@ void SceneBuilder::appendSh(const StoredBlock& block, const ActiveBlock& active)
     const auto gather = gathers[static_cast<std::size_t>(scene_.sh_degree)];
     const int in_file = shCoefficientCount(notes_.sh_degree_in_file);
     const auto width = static_cast<std::size_t>(3 * shCoefficientCount(scene_.sh_degree));
-    // Row by row through a small array: growing the vector first would write everything twice.
+    // Row by row through a small array, since growing the vector first would write everything twice.
     std::array<float, 48> splat{};
     for (std::size_t i = 0; i < active.count; ++i) {
         gather(block, active.source[i], in_file, splat.data());
@@ -116,7 +116,7 @@ void SceneBuilder::growShTo(int sh_degree) {
     scene_.sh_degree = sh_degree;
 }
 
-// Of at most a hundred thousand splats, evenly picked: enough for a median.
+// From at most a hundred thousand splats, evenly picked, which is enough for a median.
 void SceneBuilder::measureFlatness() {
     const std::size_t step = scene_.size() / 100'000 + 1;
     std::vector<float> flatness;

@@ -39,7 +39,7 @@ private:
     ActiveBlock active_;
 };
 
-// The Scene::origin along an axis, for positions around `middle` that a file has in more than float32: a
+// The Scene::origin along an axis, for positions around `middle` that a file stores in more than float32: a
 // nearby whole number if steps of float32 there are a millimetre or more; otherwise 0.
 double originAbout(double middle);
 

@@ -1,4 +1,4 @@
-// Searches a folder's names.
+// Finds scenes by the names in a folder.
 #include "engine/files/scene_folder.h"
 
 #include "engine/address.h"
@@ -60,8 +60,8 @@ std::vector<Checkpoint> findIterations(const fs::path& folder) {
     return found;
 }
 
-// A training saves after round numbers of steps, some counted from 0; the frames of a film are numbered one
-// by one.
+// Training programs save after round numbers of steps, some counting from 0; the frames of a film are
+// numbered one by one.
 bool isRound(std::string_view steps) { return steps.ends_with("00") || steps.ends_with("99"); }
 
 // Scenes named after the training step at which they were saved, in no particular order. Empty if one of the
@@ -71,7 +71,7 @@ std::vector<Checkpoint> findCheckpointFiles(const fs::path& folder) {
     std::error_code error, ignored;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
-        // Of gsplat and others; the last is Brush's.
+        // As gsplat and others name them; the last is Brush's.
         for (const char* front : {"point_cloud_", "iteration_", "export_"}) {
             const std::string_view digits = digitsOf(name, front, ".ply");
             if (digits.empty() || !entry->is_regular_file(ignored)) { continue; }
@@ -116,7 +116,7 @@ fs::path findCameraFile(const fs::path& scene) {
     const fs::path folder = whole.parent_path();
     const bool is_trained = folder.filename().string().starts_with("iteration_") &&
                             folder.parent_path().filename() == "point_cloud";
-    // A training's output is complete: what lies beside its folder belongs to another one.
+    // The output of a training run is complete: what is next to its folder belongs to another run.
     const fs::path beside = is_trained ? folder.parent_path().parent_path() : folder;
     std::vector<fs::path> places{whole, beside};
     if (const std::optional<TrainingOutput> training = findTrainingOutput(whole)) {
@@ -153,8 +153,8 @@ std::optional<std::string> findOnlyScene(const fs::path& folder) {
 }
 
 std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder) {
-    // By what is left of a name without one of its numbers; a name with several numbers belongs to that many
-    // groups.
+    // Grouped by what is left of a name without one of its numbers; a name with several numbers belongs to
+    // several groups.
     std::map<std::string, std::map<std::pair<std::size_t, std::string>, std::string>> groups;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {

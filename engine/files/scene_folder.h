@@ -10,8 +10,8 @@
 
 namespace binosplat {
 
-// As 3DGS and 2DGS trainings leave it: point_cloud/iteration_N/point_cloud.ply, and cameras.json beside
-// point_cloud. Also that folder point_cloud by itself, or a folder of checkpoints:
+// As the training of 3DGS and 2DGS leaves it: point_cloud/iteration_N/point_cloud.ply, and cameras.json
+// beside point_cloud. Also that folder point_cloud by itself, or a folder of checkpoints:
 // iteration_N/point_cloud.ply, or files such as point_cloud_N.ply with round numbers.
 struct TrainingOutput {
     std::string scene;               // the one with the highest N

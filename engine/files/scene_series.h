@@ -10,19 +10,19 @@
 
 namespace binosplat {
 
-// True if `source` is such a folder; false for a folder that is recognized as something else first: SOG,
-// streamed or not, or a training's output.
+// True if `source` is such a folder; false for a folder that counts as something else: SOG, streamed or not,
+// or the output of a training run.
 bool isMovingScene(const std::string& source);
 
 class SceneSeries {
 public:
-    // Throws Error if `source` is not one, if it may mean either of two groups of numbered files, or if the
-    // folder cannot be read.
+    // Throws Error if `source` is not one, if it has two possible groups of numbered files, or if the folder
+    // cannot be read.
     explicit SceneSeries(const std::string& source);
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    // The number of frames. A number that is missing from an otherwise even sequence also counts as a frame,
-    // which shows the same scene as the frame before it.
+    // The number of frames. A number that is missing from an otherwise regular sequence also counts as a
+    // frame, which shows the same scene as the frame before it.
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
     // Files.
     [[nodiscard]] std::size_t sceneCount() const { return scenes_.size(); }
@@ -35,12 +35,12 @@ public:
     // What a user should know, one sentence each.
     [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
 
-    // On any thread. Throws Error if the file is broken, or of another format than the first.
+    // On any thread. Throws Error if the file is broken, or has another format than the first.
     [[nodiscard]] Scene load(std::size_t scene, LoadNotes& notes, const Progress& progress = {}) const;
 
 private:
     std::string name_, format_;
-    // That of the first file serves for all; otherwise the scene would jump.
+    // The first file's origin is used for all; otherwise the scene would jump.
     glm::dvec3 origin_{0.0};
     std::vector<std::string> scenes_;  // files
     std::vector<std::size_t> frames_;

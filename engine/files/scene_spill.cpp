@@ -1,4 +1,4 @@
-// The arrays of each part as they are in memory, each after its size.
+// Writes the arrays of each part as they are in memory, each preceded by its size.
 #include "engine/files/scene_spill.h"
 
 #include "engine/error.h"
@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace {
 
-// All arrays of a scene, one after the other.
+// All arrays of a scene, one after another.
 void forEachArray(auto& scene, auto&& call) {
     call(scene.positions);
     call(scene.rotations);

@@ -30,7 +30,7 @@ void addUnsaid(const Scene& scene, std::vector<std::string>& losses) {
     if (scene.y_up) { losses.emplace_back("that y is up (render it with --up 0,1,0)"); }
 }
 
-// Formats without float64.
+// Notes about formats without float64.
 void addOrigin(const Scene& scene, std::vector<std::string>& losses) {
     if (scene.origin != glm::dvec3(0.0)) {
         losses.push_back("that its positions count from " + describeOrigin(scene));

@@ -1,4 +1,4 @@
-// Plain k-means, every splat against every entry, would take hours. A tree of splits gives the first
+// Plain k-means, comparing every splat with every entry, would take hours. A tree of splits gives the first
 // clusters; then each splat looks for a nearer entry among the neighbours of its own in the tree's order.
 #include "engine/files/sh_palette.h"
 
@@ -127,7 +127,7 @@ std::vector<Cluster> grow(const Rows& rows, std::span<std::uint32_t> order, std:
         open.pop();
         const std::size_t middle = cluster.error > 0.0 ? split(rows, order, cluster) : cluster.begin;
         if (middle == cluster.begin || middle == cluster.end) {
-            done.push_back(cluster);  // all alike
+            done.push_back(cluster);  // all are equal
             continue;
         }
         open.push(measure(rows, order, cluster.begin, middle));

@@ -29,7 +29,7 @@ public:
 };
 
 std::unique_ptr<SogFiles> openSogFolder(const std::string& folder);
-// Those beside `meta`, a meta.json among `files`, which outlive it.
+// Those beside `meta`, a meta.json among `files`, which must outlive it.
 std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& meta);
 
 // Only in a build with SOG. Throws Error if `file` is not a zip archive or holds no meta.json.

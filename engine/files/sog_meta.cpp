@@ -22,7 +22,7 @@ ByteTable readCodebook(const JsonNode& node) {
     check(size >= 1 && size <= 256, "{}: has {} entries, expected 1 to 256", book.place(), size);
     ByteTable table;
     table.fill(std::numeric_limits<float>::quiet_NaN());
-    // Early writers put null in front; its value continues the series of the others.
+    // Early writers put null first; its value continues the series of the others.
     const bool null_in_front = size == 256 && book.value[0].is_null();
     for (std::size_t i = null_in_front ? 1 : 0; i < size; ++i) { table[i] = book.at(i).number(); }
     if (null_in_front) { table[0] = table[1] + (table[1] - table[255]) / 255.0f; }

@@ -1,4 +1,4 @@
-// Rounding, and sixteen bits spread over forty-eight.
+// Rounding, and spreading sixteen bits over forty-eight.
 #include "engine/files/sog_pack.h"
 
 #include <algorithm>

@@ -21,7 +21,7 @@ SogPlaces findSogPlaces(const Scene& scene);
 std::vector<std::uint32_t> mortonOrder(const SogPlaces& places);
 
 // Three bytes for the smaller components, between -1/sqrt(2) and 1/sqrt(2), and one from 252 on that says
-// which of w, x, y, z is left out.
+// which of w, x, y, z is not stored.
 std::array<std::uint8_t, 4> packSogRotation(const glm::quat& rotation);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// From the bytes of pixels to stored attributes.
+// Turns the bytes of pixels into stored attributes.
 #include "engine/files/sog_splats.h"
 
 #include "engine/error.h"
@@ -33,7 +33,7 @@ Packed readPacked(SogFiles& files, const std::string& name) {
     return packed;
 }
 
-// The SH degree of version 1, which the width of its palette tells.
+// The SH degree in version 1, which follows from the width of its palette.
 int paletteDegree(const SogPalette& palette, const Packed& centroids) {
     for (int degree = 1; degree <= kMaxShDegree; ++degree) {
         const std::size_t width =

@@ -16,7 +16,7 @@ namespace binosplat {
 // Throws Error in a build that cannot decode WebP.
 void requireSogDecoder(const std::string& source);
 
-// All pictures decoded: 20 to 24 bytes a splat, and the palette.
+// All pictures decoded: 20 to 24 bytes per splat, and the palette.
 struct SogPictures {
     Pixels means_low, means_high, scales, quats, sh0, centroids, labels;
 };

@@ -1,4 +1,4 @@
-// Packing into a SOG bundle of version 2.
+// Packs a scene into a SOG bundle of version 2.
 #include "engine/error.h"
 #include "engine/files/codebook.h"
 #include "engine/files/quantized.h"
@@ -24,7 +24,8 @@ namespace binosplat {
 
 namespace {
 
-// The logarithm of a scale of no extent: nothing else is as small, and its square is still a normal float32.
+// The logarithm of a scale without extent: nothing else is as small, and its square is still a normal
+// float32.
 constexpr float kNoExtent = -20.0f;
 constexpr double kPaletteShare = 0.6, kPicturesShare = 0.35;  // of the time
 
@@ -34,7 +35,7 @@ Pixels blank(glm::uvec2 size_px) {
     return pixels;
 }
 
-// As square as possible, with sides that are multiples of four.
+// As close to a square as possible, with sides that are multiples of four.
 glm::uvec2 choosePictureSize(std::size_t splats, const std::string& path) {
     const auto fours = [](double side) {
         return 4 * std::max(1u, static_cast<std::uint32_t>(std::ceil(side / 4.0)));
@@ -68,7 +69,7 @@ std::vector<float> listColours(const Scene& scene) {
     return colours;
 }
 
-// Scales of no extent have the first value to themselves, since the others are far from it.
+// Scales without extent have the first value to themselves, since the others are far from it.
 Codebook makeScaleBook(const std::vector<float>& logarithms) {
     std::vector<float> some;
     std::ranges::copy_if(logarithms, std::back_inserter(some),
@@ -98,7 +99,7 @@ Pixels drawPalette(const ShPalette& palette, const Codebook& book) {
                rows =
                    static_cast<std::uint32_t>((palette.size() + kSogPaletteColumns - 1) / kSogPaletteColumns);
     Pixels pixels = blank({columns, rows});
-    // Entries follow each other in a row's pixels.
+    // The entries of a row follow one another in its pixels.
     for (std::size_t i = 0; i < palette.entries.size() / 3; ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             pixels.rgba[4 * i + channel] = book.nearest(palette.entries[3 * i + channel]);
@@ -214,7 +215,7 @@ void write(const Scene& scene, const std::string& path, const Progress& progress
 
 }  // namespace
 
-// A power of two: the rows of the palette's picture are full.
+// A power of two, so that the rows of the palette's picture are full.
 std::size_t sogPaletteSize(const Scene& scene) {
     return std::min(std::bit_floor(scene.size()), kMostPaletteEntries);
 }

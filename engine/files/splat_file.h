@@ -1,4 +1,4 @@
-// .splat files: 32 bytes a splat, no header.
+// .splat files: 32 bytes per splat, no header.
 #pragma once
 
 #include "engine/files/input_file.h"

@@ -1,5 +1,5 @@
-// The numbers are bits plus one: x leads right instead of left; the vertical one of y and z up instead of
-// down; the other one front instead of back; z is the vertical one.
+// The numbers are bits plus one: x points right instead of left; the vertical one of y and z points up
+// instead of down; the other one to the front instead of back; z is the vertical one.
 #include "engine/files/spz_axes.h"
 
 #include "engine/files/quantized.h"
@@ -21,11 +21,11 @@ glm::vec3 signsOf(std::uint32_t bits) {
             (bits & kFront) != 0 ? 1.0f : -1.0f};
 }
 
-// Right, down, forward from the file's axes.
+// Maps the file's axes to right, down, forward.
 glm::dmat3 matrixOf(std::uint32_t bits) {
     const glm::dvec3 signs(signsOf(bits));
     const glm::dvec3 right(signs.x, 0.0, 0.0), down(0.0, signs.y, 0.0), forward(0.0, 0.0, signs.z);
-    // The columns say where x, y, z lead.
+    // The columns say where x, y, z point.
     return (bits & kVerticalZ) != 0 ? glm::dmat3(right, forward, down) : glm::dmat3(right, down, forward);
 }
 
@@ -61,7 +61,7 @@ glm::quat SpzAxes::turn(const glm::quat& rotation) const {
     glm::quat turned = rotation;
     glm::vec3 signs = signs_;
     if (z_is_up_) {
-        // A quarter turn about x takes z to y and y to -z.
+        // A quarter turn about x maps z to y and y to -z.
         const float half = std::sqrt(0.5f);
         turned = glm::quat(half, -half, 0.0f, 0.0f) * rotation;
         signs.z = -signs.z;

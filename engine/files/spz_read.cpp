@@ -1,4 +1,4 @@
-// Unpacking of SPZ.
+// Unpacks SPZ.
 #include "engine/error.h"
 #include "engine/files/gzip.h"
 #include "engine/files/quantized.h"
@@ -31,7 +31,7 @@ constexpr std::size_t kMostRecords = std::size_t{1} << 16;
 struct Header {
     std::uint32_t version = 0;
     std::uint64_t splats = 0;
-    int sh_degree = 0;  // after cutting; sh_bytes tells what the file has
+    int sh_degree = 0;  // after limiting it; sh_bytes says what the file has
     int fractional_bits = 0;
     bool antialiased = false;
     bool has_extensions = false;
@@ -62,7 +62,7 @@ Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bo
     return header;
 }
 
-// All attributes, one after the other, and the beginning of the extensions' records.
+// All attributes, one after another, and the beginning of the extensions' records.
 struct Attributes {
     std::vector<std::byte> bytes, records;
     const std::byte *positions, *alphas, *colours, *scales, *rotations, *sh;
@@ -114,13 +114,13 @@ Attributes readStream(InputFile& file, const ReadSome& read, const Header& heade
     return attributes;
 }
 
-// Version 4: after the header come the number of streams, the place of their table (two 64-bit sizes each:
-// packed, plain), and a stream per attribute, each compressed by itself. Records of extensions are between
-// header and table.
+// Version 4: the header is followed by the number of streams, the place of their table (two 64-bit sizes for
+// each: packed, plain), and a stream per attribute, each compressed by itself. Records of extensions are
+// between the header and the table.
 Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at,
                          const Progress& progress) {
     const std::array<std::uint64_t, 6> per_splat{9, 1, 3, 3, header.rotation_bytes, header.sh_bytes};
-    const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // empty streams may be left out
+    const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // empty streams may be omitted
     check(streams >= least && streams <= 6, "{}: header: {} streams, expected {}", file.name(), streams,
           least);
     check(table_at >= file.positionBytes() && table_at <= file.sizeBytes(),

@@ -46,8 +46,8 @@ std::byte* putColour(const float* f_dc, std::byte* at) {
     return at;
 }
 
-// The third scale is the smallest, so that readers of surfaces drop that one; for discs it is the smallest
-// possible.
+// The third scale is the smallest, so that programs that draw discs drop that one; for discs it is the
+// smallest possible.
 std::byte* putScale(const Scene& scene, std::size_t splat, std::byte* at) {
     const glm::vec2& scale = scene.scales[splat];
     for (const float axis : {scale.x, scale.y, scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f}) {

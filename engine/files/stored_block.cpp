@@ -14,10 +14,10 @@ namespace {
 // Any finite number whose exponential is too large for float32.
 constexpr float kFarLogarithm = 1000.0f;
 
-// Finds the rows that hold only meaningful numbers: v * 0 is 0 for a finite v and NaN otherwise, and a sum
-// keeps a NaN. Two infinities have a meaning, and are bounded before they count: a logit of +infinity is
-// opacity 1; -infinity, the logarithm of length 0, is a third axis without extent. If that is not the
-// shortest axis, it is found later.
+// Finds the rows that contain only meaningful numbers: v * 0 is 0 for a finite v and NaN otherwise, and a sum
+// keeps a NaN. Two infinities have a meaning, and are replaced by finite numbers first: a logit of +infinity
+// is opacity 1; -infinity, the logarithm of length 0, is a third axis without extent. If that is not the
+// shortest axis, this is noticed later.
 std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, bool three_scales) {
     std::array<float, StoredBlock::kRows> zeros{};
     for (int attribute = 0; attribute < kStoredRest0; ++attribute) {

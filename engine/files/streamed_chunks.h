@@ -1,4 +1,4 @@
-// The chunks of a streamed SOG scene: folders or bundles beside a lod-meta.json, on the disk or elsewhere.
+// The chunks of a streamed SOG scene: folders or bundles next to a lod-meta.json, on the disk or elsewhere.
 #pragma once
 
 #include "engine/files/input_file.h"
@@ -17,8 +17,8 @@ namespace binosplat {
 // For one thread at a time.
 class StreamedChunks {
 public:
-    // For a folder that holds a lod-meta.json, or an open lod-meta.json, whose SceneFiles outlive this.
-    // Throws Error if it is broken.
+    // For a folder that contains a lod-meta.json, or an open lod-meta.json, whose SceneFiles must outlive
+    // this. Throws Error if it is broken.
     explicit StreamedChunks(const std::string& folder);
     explicit StreamedChunks(InputFile& file);
 
@@ -32,10 +32,10 @@ public:
     [[nodiscard]] std::size_t environmentIndex() const { return meta_.files.size(); }
     [[nodiscard]] const std::string& path(std::size_t file) const;
 
-    // They will be opened soon.
+    // Says that these files will be opened soon.
     void expect(std::span<const std::size_t> files) const;
-    // One of the meta's files. It is within the folder, wherever links lead, and no other file is the same
-    // one. Throws Error naming the file. For one elsewhere it is not known yet whether its count is
+    // One of the meta's files. It is within the folder, wherever links lead, and different from all the
+    // others. Throws Error naming the file. If it is elsewhere, it is not known yet whether its count is
     // plausible: SogSplats::requirePlausibleCount waits for its pictures.
     [[nodiscard]] SogSplats open(std::size_t file);
     // Empty if the scene has none, or if it cannot be fetched, in which case it has none from now on. Throws
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] std::optional<SogSplats> openEnvironment();
     // Why an environment could not be fetched; empty if it could, or if there is none.
     [[nodiscard]] const std::string& missingEnvironment() const { return missing_environment_; }
-    // Throws Error if that open file ends before the range does.
+    // Throws Error if this open file ends before the range does.
     void requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const;
 
 private:

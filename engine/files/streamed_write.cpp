@@ -203,7 +203,7 @@ void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const 
 }
 
 // By level: the mean square where its splats show, or the whole level's if none showed. Errors add up if a
-// level is compared with one that is off itself, and no coarser level counts as better than a finer one.
+// level is compared with one that has errors itself, and no coarser level counts as better than a finer one.
 std::vector<double> StreamedWriter::errorsOf(const Node& leaf) const {
     std::vector<double> errors(counts_.size());
     for (std::size_t level = 1; level < errors.size(); ++level) {

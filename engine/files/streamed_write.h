@@ -18,23 +18,23 @@ struct StreamedWriteSettings {
     std::uint64_t leaf_splats = 16 * 1024;    // of the finest level, at most
 };
 
-// How far pictures of a level are off where one of its splats shows: sums over pixels of the splat's blending
-// weight, and of that weight times the mean squared error over channels.
+// The error of a level's pictures where one of its splats is visible: sums over pixels of the splat's
+// blending weight, and of that weight times the mean squared error over channels.
 struct SplatError {
     double weight = 0.0, square = 0.0;
 };
 
 class StreamedWriter {
 public:
-    // `path` ends in /lod-meta.json. Its folder appears whole, with finish(), or not at all; until then
-    // everything is in a folder beside it. Throws Error if the folder exists and is not empty.
+    // `path` ends in /lod-meta.json. Its folder appears complete, with finish(), or not at all; until then
+    // everything is in a folder next to it. Throws Error if the folder exists and is not empty.
     StreamedWriter(const std::filesystem::path& path, const StreamedWriteSettings& settings);
     StreamedWriter(const StreamedWriter&) = delete;
     StreamedWriter& operator=(const StreamedWriter&) = delete;
     ~StreamedWriter();
 
-    // Call this first. Makes the leaves, with about equally many splats of the finest level each, whose
-    // centres these are. Throws Error for none.
+    // Call this first. Makes the leaves, with about the same number of splats of the finest level in each;
+    // `centres` are those of all its splats. Throws Error if there are none.
     void cutLeaves(std::span<const glm::vec3> centres);
     // Groups whole leaves into blocks of at most `most` of these splats, unless a single leaf has more: the
     // block of each leaf, by its node.
@@ -46,20 +46,20 @@ public:
     // The indices of these centres by block, ascending.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> sortInto(const Blocks& blocks,
                                                                    std::span<const glm::vec3> centres) const;
-    // Adds splats of a level: all, or those of some leaves to which none have been added. They go to the
-    // leaves in which their centres lie, in Morton order. `errors`: for each splat, against level `against`,
-    // an earlier one; empty at level 0, and otherwise if unknown.
+    // Adds splats of a level: all, or those of some leaves to which none have been added yet. They go to the
+    // leaves in which their centres lie, in Morton order. `errors`: for each splat, against the earlier level
+    // `against`; empty at level 0, and otherwise if unknown.
     void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {},
              std::size_t against = 0, const Progress& progress = {});
     // How many splats each level has so far.
     [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
-    // A path for scratch files that goes with the writer: a folder that does not exist yet.
+    // A path for scratch files, removed with the writer: a folder that does not exist yet.
     [[nodiscard]] std::filesystem::path scratchFolder() const { return part_ / "scratch"; }
     // Scratch folders must be gone by then.
     void finish();
 
 private:
-    // Where a leaf's splats of a level are, and how far they are off.
+    // Where a leaf's splats of a level are, and how large their error is.
     struct Part {
         std::size_t level = 0, file = 0, offset = 0, count = 0, against = 0;
         SplatError error;

@@ -1,4 +1,4 @@
-// Zip archives, through libzip; a build without SOG has none.
+// Zip archives, through libzip; not in a build without SOG.
 #pragma once
 
 #include "engine/files/input_file.h"
@@ -30,11 +30,12 @@ public:
     ZipArchive(std::string path, std::string expected, Open open);
     ~ZipArchive();
 
-    // Of all entries, including folders, in the archive's order. Throws Error if it is not a whole archive.
+    // Names of all entries, including folders, in the archive's order. Throws Error if the archive is
+    // incomplete.
     [[nodiscard]] std::vector<std::string> names() const;
     // Throws Error if there is no such entry, or if it is encrypted.
     [[nodiscard]] Entry find(const std::string& name) const;
-    // Until it is needed again.
+    // Closes the file until it is needed again.
     void close();
 
 private:
@@ -51,8 +52,8 @@ public:
     ZipReader(const ZipReader&) = delete;
     ZipReader& operator=(const ZipReader&) = delete;
 
-    // Fills `target` as far as the entry goes and returns how many bytes it gave. Throws Error if the entry
-    // is broken; its checksum is compared at the end.
+    // Fills `target` as far as the entry goes and returns the number of bytes. Throws Error if the entry is
+    // broken; its checksum is compared at the end.
     std::size_t read(std::span<std::byte> target);
 
 private:

@@ -201,7 +201,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
     // Each picture that is rendered at the same time as others has its own part of the lists of splats; the
-    // same holds in the next frame, whose pictures meet no more splats than these.
+    // same holds in the next frame, whose pictures show no more splats than these.
     const auto ofAll = [](std::uint32_t needed, int shares) {
         return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) *
                static_cast<std::uint32_t>(shares);

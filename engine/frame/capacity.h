@@ -1,4 +1,4 @@
-// The device memory of frames: pictures, lists, and the buffers of warps. As much as the eyes need, which the
+// The device memory of frames: pictures, lists, and the buffers of warps; as much as the eyes need, which the
 // frames themselves find out.
 #pragma once
 
@@ -26,17 +26,17 @@ public:
 
     // Lists hold splats of `scene` from now on.
     void show(const GpuScene& scene);
-    // As if no frame had been drawn yet.
+    // Resets this, as if no frame had been drawn yet.
     void forgetFrames() { first_frame_ = true; }
     [[nodiscard]] bool isFirstFrame() const { return first_frame_; }
 
     // Pictures as the plan wants them. `hidden_tiles`: see FrameSettings. Throws Error if the device lacks
     // the memory: then no picture is left.
     void fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles);
-    // Lists, if there are none.
+    // Makes lists, if there are none.
     void fitLists();
 
-    // The following are about what a frame drawn by `plan` reported.
+    // The following concern what a frame drawn according to `plan` reported.
 
     // True if a list lacked all capacity.
     [[nodiscard]] static bool isCutShort(const FrameState& state);
@@ -47,12 +47,11 @@ public:
     [[nodiscard]] bool hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const;
     // True if the lists were long enough; if not, makes them longer.
     bool growIfNeeded(const FramePlan& plan, const FrameState& state);
-    // True if it made them longer: with some to spare or, if that does not fit, with just as much as is
-    // needed.
+    // True if it made them longer: with some to spare or, if that does not fit, just as long as needed.
     bool growIfItFits(const FramePlan& plan, const FrameState& state);
-    // If the source's pairs did not fit: a guess, since the target's depend on them.
+    // If the source's pairs did not fit: makes a guess, since the target's depend on them.
     void makeRoomForChosen(const FramePlan& plan, const FrameState& state);
-    // For kRoomAhead times what was needed; does without if that does not fit, as long as the lists
+    // Provides kRoomAhead times what was needed, or less if that does not fit, as long as the lists
     // themselves do.
     void makeRoomAhead(const FramePlan& plan, const FrameState& state);
     [[nodiscard]] bool fitsAhead() const { return room_ahead_fits_; }
@@ -71,7 +70,7 @@ public:
     [[nodiscard]] const ShownTiles& shown(int target) const {
         return shown_[static_cast<std::size_t>(target)];
     }
-    // For the scene's changes, in all pictures of a frame: made when it is first needed.
+    // For the scene's changes, in all pictures of a frame; made when it is first needed.
     [[nodiscard]] const Buffer& changedRects();
     // Call this before the passes of a frame.
     void recordShown(Commands& commands);
@@ -84,7 +83,7 @@ private:
     // The capacity of PairBuffers for this many pairs of a target.
     [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target,
                                              std::uint32_t pairs, bool is_ahead) const;
-    // False, with the lists as they were, if the device lacks the memory.
+    // False, with the lists as they were, if the device does not have enough memory.
     bool tryToGrow(const FrameCapacity& wanted);
     // Capacity for `spare` times what was needed, in the lists that must grow.
     [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead,

@@ -19,7 +19,7 @@ struct TargetCounters {
 
 // For a picture that is made from another.
 struct WarpedCounters {
-    // How its pixels came about, before tiles are rendered again; if that was kept.
+    // How its pixels were made, before tiles are rendered; if this was kept.
     struct Classes {
         std::uint64_t covered = 0, gap = 0, hole = 0;
     };
@@ -40,8 +40,8 @@ struct FrameCounters {
     std::uint64_t commands = 0, splats_read = 0;
     std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
     std::vector<TargetCounters> targets;  // one for each eye
-    // For a scene whose parts come and go: pages that hold splats, and those that cull examined for the list
-    // that needed most.
+    // For a scene whose parts come and go: pages that contain splats, and those that cull examined for the
+    // list that needed most.
     struct Pages {
         std::uint64_t resident = 0, seen = 0;
     };
@@ -65,7 +65,7 @@ struct FrameCounters {
     };
     std::optional<Streaming> streaming;
 
-    // By their names in reports; empty for a frame that was not drawn.
+    // The counters by their names in reports; empty for a frame that was not drawn.
     [[nodiscard]] std::map<std::string, std::uint64_t> named() const;
 };
 

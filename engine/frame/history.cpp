@@ -9,7 +9,7 @@ namespace {
 
 // From one frame to the next the contents of lists change by less than their spare capacity, unless an eye
 // moves or turns farther than this, or its angles change by more than this share. Heads move at up to 3 m/s
-// and turn at up to 400 degrees/s: at 72 frames a second that is 4 cm and 5.6 degrees. Snap turns are 15
+// and turn at up to 400 degrees/s: at 72 frames per second that is 4 cm and 5.6 degrees. Snap turns are 15
 // degrees and more.
 constexpr double kJumpMetres = 0.2;
 constexpr double kJumpDegrees = 6.0;

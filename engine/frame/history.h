@@ -1,4 +1,4 @@
-// What a frame remembers about the ones before it.
+// What a frame remembers about earlier ones.
 #pragma once
 
 #include "engine/frame/settings.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// Frames in flight together must have this in common.
+// What frames that are in flight together must have in common.
 struct FrameShape {
     Mode mode = Mode::kMono;
     int dominant = 0;
@@ -21,14 +21,14 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
 
 // True if lists for these eyes may differ much from those for `before`.
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
-// The farthest that a history may lie from these eyes, in scene units.
+// The farthest that a history may be from these eyes, in scene units.
 double farthestHistory(std::span<const Eye> eyes, double units_per_metre);
 // True if what `history` saw is of use for `eye`: their places and axes are close. Sizes may differ, and
 // angles by less than a factor of two.
 bool canComeFrom(const Eye& history, const Eye& eye, double farthest);
 
-// Whether warping pays: `predicted` does without as long as it did not pay in the last known frame with the
-// same settings.
+// Whether warping pays: `predicted` does without it for as long as it did not pay in the last known frame
+// with the same settings.
 class MovingPays {
 public:
     struct Asked {

@@ -9,7 +9,7 @@ namespace binosplat {
 StereoFrame::Lent StereoFrame::lend(std::span<const Eye> eyes, const FrameSettings& settings,
                                     const Append& append) {
     finish();
-    // What is freed from here on stays until the earlier frames have come back.
+    // Whatever is freed from here on stays until the earlier frames have come back.
     const std::uint64_t number = context_.freedBuffers().beginFrame();
     try {
         if (idle_.empty()) {

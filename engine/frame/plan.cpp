@@ -50,7 +50,7 @@ bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
            std::ranges::all_of(gazes, [](const auto& gaze) { return gaze.has_value(); });
 }
 
-// The chosen tiles of both eyes, the first in this order first, from one list.
+// The chosen tiles of both eyes, in this order, from one list.
 void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan list) {
     list.of_chosen = true;
     // A patch is too little work for a GPU: if the eyes have the same order and tiles, each stage processes
@@ -162,7 +162,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const bool has_history = keeps_history && histories.of_eyes[0] && histories.of_eyes[1];
     // If no history is kept, `temporal` falls back to `predicted`. If there is none, as after a jump, both
     // eyes are exact, since later pictures are made from them. And if each eye is cheap to render, making one
-    // from the other would save a tenth of the time for 15 to 30 dB.
+    // from the other would save a tenth of the time at the price of 15 to 30 dB.
     const bool coarse = hasCoarseTiles(settings, eyes.size()),
                predicts = choiceOf(settings.mode) == TileChoice::kPredicted && !keeps_history;
     const Mode mode = predicts                                    ? coarse ? Mode::kShared : Mode::kPredicted

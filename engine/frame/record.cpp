@@ -1,11 +1,11 @@
 // The steps of a plan as passes. A frame of `temporal` has these, if one order of the splats serves both eyes
 // (planTemporal in plan.cpp):
 //
-//   kHistory       for each eye: what its last picture shows of the new one, and the error to expect of each
+//   kHistory    for each eye: what its last picture shows of the new one, and the error to expect of each
 //               tile (recordFromHistory)
 //   kChoose     the tiles of both that are rendered again (recordChoice)
 //   kList       the splats that touch these, front to back (recordCull, recordOrder)
-//   kRenderAll  the chosen tiles, and what the next frame is told of them (recordPictures)
+//   kRenderAll  the chosen tiles, and what the next frame is told about them (recordPictures)
 //
 // Before them the device is told where everything lies (describe.cpp), and after them it reports what it did
 // (report.cpp).

@@ -1,4 +1,4 @@
-// A frame's report: its counters, and what it left out.
+// A frame's report: its counters, and which steps it did not need.
 #pragma once
 
 #include "engine/frame/capacity.h"

@@ -18,7 +18,7 @@
 
 namespace binosplat {
 
-// A program's own depths, one a pixel: depth_scale / z + depth_offset.
+// A program's own depths, one per pixel: depth_scale / z + depth_offset.
 struct MeshDepths {
     gpu::DeviceAddress<float> depths;
     float depth_scale = 1.0f, depth_offset = 0.0f;
@@ -45,7 +45,7 @@ struct FrameSettings {
     bool keep_moments = false;  // I and J of the dominant eye, for readInverseDepthMoments
     // How each pixel of the affiliated eye came about, for readPixelClasses and the report's counters.
     bool keep_classes = false;
-    // By eye, hidden tiles: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become
+    // By eye, hidden tiles: a byte per tile, row-major, 1 if it is hidden; empty: none is. They become
     // background, cost no pairs and do not count for the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
     // Modes that render every tile (isInFull), by eye: splats show only where they are nearer than this.

@@ -1,4 +1,4 @@
-// Frames one after another: what each prepares, when it is waited for, and when it is done again.
+// Successive frames: what each prepares, when it is waited for, and when it is rendered once more.
 #include "engine/frame/stereo_frame.h"
 
 #include "engine/frame/changes.h"
@@ -15,7 +15,7 @@ namespace {
 // figure changed, lists that were made for whole pictures may be too short for the patches of both.
 constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.4;
 // If more than this share of a picture's tiles come into view, or if some are newly hidden, its lists may
-// differ much.
+// change a lot.
 constexpr double kMostHiddenDiffer = 0.1;
 
 // The traits that a history must share with a frame.
@@ -87,7 +87,7 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
         recorder(true).record(commands, next);
         commands.drop();
     }
-    // Nothing is known about any frame.
+    // Nothing is known about earlier frames any more.
     moving_pays_.forget();
     room_.forgetFrames();
 }
@@ -241,7 +241,7 @@ FrameState StereoFrame::stateAhead() const {
         visible = std::max<std::uint64_t>(visible, state_.visible[l].needed);
         ahead.visible[l].needed = std::min(state_.visible[l].needed, gpu::kMaxItems - more) + more;
     }
-    // Each of them meets about as many tiles as the present ones, none of which may have been visible yet.
+    // Each of them touches about as many tiles as the present ones, none of which may have been visible yet.
     constexpr std::uint64_t kLeastTiles = 2;
     for (std::size_t t = 0; t < plan_.targets.size(); ++t) {
         const std::uint64_t pairs = state_.targets[t].pairs.needed,

@@ -28,31 +28,31 @@ public:
     static std::unique_ptr<StereoFrame> beside(StereoFrame& other);
 
     // Frames show `scene` from now on, which is on the same device. Kernels stay compiled. Waits for frames
-    // in flight. Throws Error if the device lacks the memory: then frames show the scene before.
+    // in flight. Throws Error if the device does not have enough memory; then frames still show the previous
+    // scene.
     void show(const GpuScene& scene);
 
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. If a buffer is too small for what the eyes
-    // see, it grows and the frame is done again: the result never comes from a truncated list. Throws Error
-    // if the device lacks the memory. `append` records what becomes of the pictures, in the same submission;
-    // it is called again if the frame is done again.
+    // see, it grows and the frame is rendered once more, so the result never comes from a truncated list.
+    // Throws Error if the device does not have enough memory. `append` records what is done with the
+    // pictures, in the same submission; it is called again if the frame is rendered once more.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings,
                        const std::function<void(Commands&)>& append = {});
-    // For showing frame after frame: returns once the frame is on its way to the device, and
-    // waits only for the one before the last, whose result it returns (empty if there is
-    // none). So the device draws one frame while the next is prepared. Lists have more
-    // capacity than the last frame needed. A frame whose lists are still too short shows
-    // background once and is counted ("frames_cut_short"), and the frame after it is waited
-    // for. So is a frame that has little in common with the one before: the first one, one
-    // of another size or mode, and one after a jump of the eyes, unless the settings say
-    // otherwise (FrameSettings::waits_after_jump). If a list is too short in a frame that is
-    // waited for, the frame is done again, once, before it is shown ("frames_done_again").
-    // What it needs is counted or, if that is not possible, guessed, so even then it is
-    // seldom cut short. `signals`, if given, is signalled when the frame is done.
+    // For showing frame after frame: returns once the frame is on its way to the device, and waits only for
+    // the frame before the previous one, whose result it returns (empty if there is none). The device thus
+    // draws one frame while the next is prepared. Lists have more capacity than the last frame needed. A
+    // frame whose lists are still too short shows background once and is counted ("frames_cut_short"), and
+    // the frame after it is waited for. So is a frame that has little in common with the previous one: the
+    // first one, one with another size or mode, and one after a jump of the eyes, unless the settings say
+    // otherwise (FrameSettings::waits_after_jump). If a list is too short in a frame that is waited for, the
+    // frame is rendered once more before it is shown ("frames_done_again"). What it needs is counted or, if
+    // that is not possible, guessed, so even then it is seldom cut short. `signals`, if given, is signalled
+    // when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {},
                                            vk::Semaphore signals = {});
-    // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the last,
-    // as renderAhead does.
+    // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the
+    // previous one, as renderAhead does.
     void passOver();
     // A frame for commands that the caller submits, to the device's queue and in the order of recording.
     struct Lent {
@@ -72,23 +72,23 @@ public:
     // The next frame has no history.
     void forgetHistory() { histories_ = {}; }
 
-    // Makes the images that renderAhead needs for such frames, if they differ from those of the frame before,
-    // for which it waits. Throws Error if the device lacks the memory: then no picture is left, and frames as
-    // before may still be rendered.
+    // Makes the images that renderAhead needs for such frames, if they differ from those of the previous
+    // frame, for which it waits. Throws Error if the device does not have enough memory; then no pictures are
+    // left, and frames as before may still be rendered.
     void reserve(std::span<const Eye> eyes, const FrameSettings& settings);
-    // Waits for all frames in flight, after which nothing that they use is in use. Returns the last one's
+    // Waits for all frames in flight, so that nothing they used is in use any more. Returns the last one's
     // result.
     std::optional<FrameResult> finish();
     // Makes all kernels again, see Context::replacedShaders. Throws Error if one cannot be made; then some
     // are new and some old.
     void rebuildKernels();
-    // Takes over the kernels of a frame of the same device and options, and keeps its own that the other
-    // lacks: kernels made for one scene need not be made again for the next. If the other goes on, it makes
-    // what it lacks again.
+    // Takes over the kernels of a frame with the same device and options, and keeps its own that the other
+    // lacks, so that kernels made for one scene need not be made again for the next. If the other frame goes
+    // on, it makes the kernels that it lacks again.
     void takeKernels(StereoFrame& from);
     // The number of its kernels.
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    // Makes the kernels of such frames, so that they do not wait for a driver's compiler: records them, but
+    // Makes the kernels for such frames, so that they do not wait for a driver's compiler: records them, but
     // draws nothing.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
@@ -98,18 +98,18 @@ public:
     [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.dominant); }
     // The same for any eye, if it was kept.
     [[nodiscard]] Image readDepth(int eye);
-    // The depth, along the eye's axis, of what a pixel shows, D over alpha; reads nothing else. Empty if less
-    // than half of the pixel is covered, or if the depth was not kept.
+    // The depth, along the eye's axis, of what a pixel shows, D over alpha; only this is read back. Empty if
+    // less than half of the pixel is covered, or if the depth was not kept.
     [[nodiscard]] std::optional<double> depthAt(int eye, glm::uvec2 pixel);
     // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; if they were kept.
     [[nodiscard]] Image readInverseDepthMoments();
-    // How each tile of the affiliated picture came about (kTileEdge ...; 0: reprojection), row-major; empty
-    // if the mode chooses none.
+    // How each tile of the affiliated picture was made (kTileEdge ...; 0: reprojected), row-major; empty if
+    // the mode does not choose tiles.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
     // The same for any eye's picture, including one that is made from its own history.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds(int eye);
-    // How each pixel of the affiliated picture outside such tiles came about (kCovered, kGap, kHole),
-    // row-major; if they were kept.
+    // How each pixel of the affiliated picture outside such tiles was made (kCovered, kGap, kHole),
+    // row-major; if these were kept.
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for display.
@@ -124,14 +124,14 @@ public:
     }
 
 private:
-    // Null: with kernels of its own.
+    // If null, it has kernels of its own.
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options,
                 PassKernels* others);
 
     using Append = std::function<void(Commands&)>;
     // A frame on the device, and what must be remembered to interpret its report. Two take turns. They share
-    // what only the device touches, since every command waits for those before it, even those of the frame
-    // before.
+    // what only the device touches, since every command waits for all earlier ones, even those of the
+    // previous frame.
     struct Flight {
         explicit Flight(const Context& context, Commands::Level level = Commands::Level::kPrimary)
             : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
@@ -146,12 +146,12 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    // `drops`: the recording is dropped, and must leave the scene's changes to the next.
+    // `drops`: the recording will be dropped, and must leave the scene's changes to the next one.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
         return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_),
                 brings_changes_};
     }
-    // The histories that earlier frames leave to such a frame.
+    // The histories that earlier frames have left for such a frame.
     [[nodiscard]] Histories historiesFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // The share of both eyes' tiles in which the scene differs from what the last frame shows.
     [[nodiscard]] double changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -166,22 +166,22 @@ private:
     // Reads the frame's report, and learns from it.
     FrameResult take(const Flight& flight);
     void renderOnce(const FrameSettings& settings, const Append& append);
-    // Until the lists are long enough.
+    // Renders until the lists are long enough.
     void renderUntilComplete(const FrameSettings& settings, const Append& append);
-    // The same for display: at most once more; returns how often it was done again. Where lists are too short
+    // The same for display, but at most once more; returns how often it was repeated. If lists are too short
     // even then, background is shown; they are long enough the next time if the device has that much memory.
     std::uint64_t renderAtMostTwice(const FrameSettings& settings, const Append& append);
     // What the last known frame would have reported if it had seen all splats that come with the next
     // changes.
     [[nodiscard]] FrameState stateAhead() const;
-    // Counts the splats that the eyes see, which costs little: if their list is too short, nothing is known
+    // Counts the splats that the eyes see, which costs little; if their list is too short, nothing is known
     // about what follows.
     void makeRoomForVisible();
-    // How much a frame has in common with the one before.
+    // How much a frame has in common with the previous one.
     enum class Likeness {
         kAlike,
         kJumps,  // lists may be too short
-        kOther,  // it takes other memory
+        kOther,  // it needs other memory
     };
     [[nodiscard]] Likeness likenessToLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
     template <typename T>
@@ -197,7 +197,7 @@ private:
     Histories histories_;             // that the last frame leaves
     FrameShape history_shape_;        // of these histories, apart from sizes
     FrameState state_{};              // the report of the last known frame
-    std::uint32_t splats_known_ = 0;  // how many the scene held then
+    std::uint32_t splats_known_ = 0;  // how many the scene had then
     MovingPays moving_pays_;
     bool brings_changes_ = true;
     // The scene's changes that the last frame shows, see GpuScene::changesSince.
@@ -207,7 +207,7 @@ private:
     std::uint64_t cut_short_ = 0, done_again_ = 0;
     std::size_t turn_ = 0;
     std::map<std::uint64_t, std::unique_ptr<Flight>> lent_;
-    std::vector<std::unique_ptr<Flight>> idle_;  // to be lent again
+    std::vector<std::unique_ptr<Flight>> idle_;  // can be lent again
     std::array<Flight, 2> flights_;              // last: they wait before anything that they use is freed
 };
 

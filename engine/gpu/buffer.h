@@ -21,7 +21,7 @@ enum class MemoryKind {
 class Buffer {
 public:
     Buffer() = default;
-    // Throws Error if the device lacks that much memory; the message calls it `name`.
+    // Throws Error if the device does not have that much memory; the message calls it `name`.
     Buffer(const Context& context, const std::string& name, std::uint64_t bytes,
            MemoryKind kind = MemoryKind::kDevice);
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }

@@ -229,7 +229,7 @@ void Commands::wait() {
     const auto [status, ticks] = timestamps_.getResults<std::uint64_t>(
         0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
         level_ == Level::kPrimary ? Flag::e64 | Flag::eWait : Flag::e64);
-    if (status == vk::Result::eNotReady) { return; }  // the caller said too early that it was done
+    if (status == vk::Result::eNotReady) { return; }  // the caller said that it was done too early
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(),
           vk::to_string(status));
     const std::uint64_t mask = context_.timestampMask();

@@ -19,7 +19,7 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                          VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    // NVIDIA's driver queries a function of the instance in this way, too: the program cannot prevent it.
+    // NVIDIA's driver queries a function of the instance in this way, too, which the program cannot prevent.
     if (data->pMessageIdName != nullptr &&
         std::strcmp(data->pMessageIdName, "WARNING-vkGetDeviceProcAddr-device") == 0) {
         return VK_FALSE;
@@ -29,7 +29,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
     return VK_FALSE;
 }
 
-// The queue family for frames: one with compute, and graphics too if possible (viewers draw with it).
+// The queue family for frames: one with compute and, if possible, graphics (viewers draw with it).
 std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& device) {
     const auto families = device.getQueueFamilyProperties();
     std::optional<std::uint32_t> found;
@@ -42,7 +42,7 @@ std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& devic
     return found;
 }
 
-// What the passes need and `device` lacks, in words; empty if the device will do.
+// What the passes need and `device` lacks, in words; empty if the device is usable.
 std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     if (device.getProperties().apiVersion < kApiVersion) { return "Vulkan 1.2"; }
     if (!queueFamilyOf(device)) { return "a compute queue"; }
@@ -150,7 +150,7 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
               kValidationLayer);
         layers.push_back(kValidationLayer);
     }
-    // Newer layers no longer have it: there a settings file or the environment selects the checks.
+    // Newer layers no longer have it; with them, a settings file or the environment selects the checks.
     const bool chooses_checks =
         validation &&
         offersExtension(loader_->enumerateInstanceExtensionProperties(std::string(kValidationLayer)),
@@ -232,8 +232,8 @@ void Context::createDevice(const ContextOptions& options) {
     queue_family_ = queueFamilyOf(physical_device_).value();
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    // Not one struct for all of Vulkan 1.2: the maker of the device may add structs of single features, which
-    // must not appear beside it.
+    // Not one struct for all of Vulkan 1.2, since whoever makes the device may add structs for single
+    // features, which must not appear together with it.
     vk::PhysicalDeviceScalarBlockLayoutFeatures scalar_layout(VK_TRUE);
     vk::PhysicalDeviceBufferDeviceAddressFeatures addresses(VK_TRUE);
     scalar_layout.pNext = &addresses;
@@ -250,7 +250,7 @@ void Context::createDevice(const ContextOptions& options) {
             device_extensions_.insert(wanted);
         }
     }
-    // What kernels request if it is available, see lib/group.glsl.
+    // What kernels request if it is available; see lib/group.glsl.
     const auto enable = [&]<typename Features>(const char* extension, Features& its) {
         if (!hasDeviceExtension(extension)) { return; }
         its = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Features>().template get<Features>();
@@ -321,7 +321,7 @@ std::span<const std::uint32_t> Context::shaderWords(std::string_view name) const
 vk::PipelineShaderStageCreateFlags Context::fullSubgroups(std::uint32_t local_size_x) const {
     using Flag = vk::PipelineShaderStageCreateFlagBits;
     if (!has_full_subgroups_ || local_size_x % max_subgroup_size_ != 0) { return {}; }
-    // Of any width: otherwise some devices choose their widest, which is their slowest.
+    // Of any width; otherwise some devices choose their widest, which is their slowest.
     return min_subgroup_size_ == max_subgroup_size_
                ? Flag::eRequireFullSubgroups
                : Flag::eRequireFullSubgroups | Flag::eAllowVaryingSubgroupSize;

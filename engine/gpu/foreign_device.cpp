@@ -1,4 +1,4 @@
-// Uses a device that remains its owner's.
+// Uses a device that belongs to the program.
 #include "engine/gpu/context.h"
 
 #include "engine/error.h"
@@ -59,7 +59,7 @@ void Context::adopt(const ForeignDevice& foreign) {
                                 enabled.addresses || enabled.scalar_layout ? "" : " and ",
                                 enabled.scalar_layout ? "" : "scalarBlockLayout"));
     }
-    // They remain when these owners go.
+    // They remain when these owners are destroyed.
     instance_ = vk::raii::Instance(*loader_, foreign.instance);
     const_cast<vk::raii::InstanceDispatcher*>(instance_.getDispatcher())->vkDestroyInstance = keepInstance;
     physical_device_ = vk::raii::PhysicalDevice(instance_, foreign.physical_device);

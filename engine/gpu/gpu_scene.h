@@ -1,4 +1,4 @@
-// A scene in device memory; packed_splats.h says what a splat takes.
+// A scene in device memory; packed_splats.h says how much a splat takes.
 #pragma once
 
 #include "engine/gpu/packed_splats.h"
@@ -36,7 +36,7 @@ public:
              bool keeps_table = false);
 
     // What frames read of it, for those of a thread of its own: counts as they are now, and memory that stays
-    // this one's, which outlives it. Brings no changes.
+    // this one's, which must outlive it. Brings no changes.
     [[nodiscard]] GpuScene asItIs() const;
 
     // Capacity in splats; in a scene of pages some places may be free.

@@ -44,7 +44,7 @@ constexpr std::size_t kHeaderWords = 5;
 // Calls `take` with each instruction and its opcode.
 template <typename Take>
 void eachInstruction(std::span<const std::uint32_t> words, const Take& take) {
-    check(words.size() >= kHeaderWords, "a shader of {} words, which is none", words.size());
+    check(words.size() >= kHeaderWords, "a shader of {} words, too few for one", words.size());
     for (std::size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
         const bool is_whole = words[at] >> 16 > 0 && (words[at] >> 16) <= words.size() - at;
         check(is_whole, "a shader of {} words that breaks off at word {}", words.size(), at);
@@ -137,7 +137,7 @@ Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t 
         pipeline_ = vk::raii::Pipeline(context.device(), cache,
                                        vk::ComputePipelineCreateInfo(flags, stage, *layout_));
     } catch (const vk::SystemError& error) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: the driver does not take the shader {}: {}",
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: the driver does not accept the shader {}: {}",
                                                      context.deviceName(), shader, error.what()));
     }
     context.name(pipeline_, shader);

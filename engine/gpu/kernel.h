@@ -28,7 +28,7 @@ public:
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
     [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
-    // What it requests of its subgroups, see Context::fullSubgroups.
+    // What it requests of its subgroups; see Context::fullSubgroups.
     [[nodiscard]] vk::PipelineShaderStageCreateFlags subgroups() const { return subgroups_; }
 
 private:
@@ -38,12 +38,12 @@ private:
     vk::PipelineShaderStageCreateFlags subgroups_;
 };
 
-// Kernels, made when they are first needed: a mode does not pay for another's.
+// Kernels, made when they are first needed, so that a mode does not pay for another's.
 class KernelCache {
 public:
-    // `table`: all that will ever be requested.
+    // `table`: all kernels that will ever be requested.
     KernelCache(const Context& context, KernelTable table) : context_(context), table_(std::move(table)) {}
-    // One of the table; the reference stays valid until rebuild() or take().
+    // A kernel from the table; the reference stays valid until rebuild() or take().
     template <typename K>
     const Kernel& get(const K& kernel) {
         return find(K::kShader, sizeof(typename K::Pass), valuesOf(kernel));
@@ -53,7 +53,7 @@ public:
     // Makes all of them again, see Context::replacedShaders. Throws as Kernel does, and then keeps the old
     // ones.
     void rebuild();
-    // Takes over the kernels of another cache of the same device, keeps its own that the other lacks, and
+    // Takes over the kernels of another cache for the same device, keeps its own that the other lacks, and
     // gives the other the rest.
     void take(KernelCache& from) {
         from.kernels_.merge(kernels_);

@@ -23,7 +23,7 @@ std::uint32_t packHalves(float low, float high) {
     return glm::packHalf2x16(glm::clamp(glm::vec2(low, high), glm::vec2(-65504.0f), glm::vec2(65504.0f)));
 }
 
-// The rotation as the device holds it: x, y, z, w of unit length. Empty for a splat that cannot be shown.
+// The rotation as stored on the device: x, y, z, w of unit length. Empty for a splat that cannot be shown.
 std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat) {
     const glm::vec3& p = scene.positions[splat];
     const glm::vec2& scale = scene.scales[splat];
@@ -41,7 +41,7 @@ std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat)
 
 constexpr double kHair = 1.0 + 1e-5, kRounding = 1e-5;
 
-// How far a splat of this opacity is visible, in scales.
+// How far from its centre a splat of this opacity is visible, in scales.
 double reachOf(float opacity) {
     return kHair * std::sqrt(std::max(2.0 * std::log(255.0 * static_cast<double>(opacity)), 0.0) + kRounding);
 }

@@ -1,5 +1,5 @@
-// Splats as the device holds them: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 more for SH bands 1 to
-// 3 if the scene has them.
+// Splats as stored on the device: 48 bytes per disc, 52 per 3D Gaussian, and 20, 48 or 92 more for SH bands 1
+// to 3 if the scene has them.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -19,10 +19,10 @@ namespace binosplat {
 struct SceneTraits {
     int sh_degree = 0;
     std::uint32_t splat_kind = gpu::kDiscs;  // or kGaussians
-    // These are Gaussians that were trained with an opacity that the low-pass dims.
+    // The Gaussians were trained with an opacity that the low-pass dims.
     bool is_dimmed = false;
-    Order usual_order = Order::kDepth;  // as the scene asks for it
-    bool is_light = false;              // its colours are light, to be encoded once they are blended
+    Order usual_order = Order::kDepth;  // the one that the scene asks for
+    bool is_light = false;              // its colours are linear, to be encoded once they are blended
 
     [[nodiscard]] bool isGaussian3d() const { return splat_kind != gpu::kDiscs; }
     bool operator==(const SceneTraits&) const = default;
@@ -50,7 +50,7 @@ struct ChunkLayout {
 // has unit length (a disc's third is 0). A splat with an opacity below kMinAlpha is not visible at all.
 glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, float opacity);
 
-// What the device must know about a page: the box around its visible splats, and how many these are.
+// What the device must know about a page: the box around its visible splats, and how many there are.
 class PageBounds {
 public:
     void add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales, float opacity);
@@ -63,8 +63,8 @@ private:
 };
 
 // Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout`
-// (for at least `count` splats). Bands of colours that the scene lacks become zeros, those beyond the traits'
-// degree are left out. `bounds` grows by the visible ones.
+// (for at least `count` splats). Bands of harmonics that the scene lacks become zeros; those beyond the
+// traits' degree are dropped. `bounds` grows to include the visible splats.
 void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits,
                 const ChunkLayout& layout, std::uint8_t* to, PageBounds* bounds = nullptr);
 
@@ -72,7 +72,7 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
 // that are never visible. Can be made on any thread.
 class PackedPages {
 public:
-    // Splats [first, first + count) of `scene`. Throws Error if they are discs and the traits' are 3D
+    // Splats [first, first + count) of `scene`. Throws Error if they are discs and the traits are for 3D
     // Gaussians, or the other way round.
     PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
     PackedPages(const Scene& scene, const SceneTraits& traits)

@@ -10,14 +10,14 @@ namespace binosplat {
 
 class PipelineCache {
 public:
-    // Without a file it serves this run only.
+    // Without a file; it then serves only this run.
     PipelineCache() = default;
     // Starts with the file's contents, if they are intact and from this device and driver.
     PipelineCache(const vk::raii::PhysicalDevice& physical_device, const vk::raii::Device& device);
 
     [[nodiscard]] const vk::raii::PipelineCache& handle() const { return cache_; }
-    // Writes the file if there is something new, whole or not at all. Failures are silent: the next run
-    // compiles again.
+    // Writes the file if there is something new, either completely or not at all. Failures are silent: the
+    // next run compiles again.
     void save() const noexcept;
 
 private:
@@ -26,7 +26,7 @@ private:
     vk::raii::PipelineCache cache_{nullptr};
 };
 
-// The folder that BINOSPLAT_PIPELINE_CACHE names, or none if that is 0; if it is not set, binosplat/ in the
+// The folder named by BINOSPLAT_PIPELINE_CACHE, or none if that is 0; if it is not set, binosplat/ in the
 // user's cache folder.
 std::filesystem::path pipelineCacheFolder();
 // The file in that folder; empty if there is no folder.

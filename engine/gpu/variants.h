@@ -26,7 +26,7 @@ constexpr FrameStage stageOfFolder(std::string_view folder) {
     return static_cast<FrameStage>(stage);
 }
 
-// A constant for which a shader is specialized, and how many values it has, from 0 up; 0: the device decides.
+// A constant for which a shader is specialized, and how many values it has, from 0 on; 0: the device decides.
 struct ShaderConstant {
     const char* field;
     std::uint32_t count;
@@ -96,8 +96,8 @@ using KernelTable = std::vector<KernelVariant>;
 
 void append(KernelTable& table, const KernelTable& more);
 
-// A shader in every combination of its constants that `is_used` accepts; the device decides none of them. The
-// last changes first.
+// A shader in every combination of its constants that `is_used` accepts; the device must not decide any of
+// them. The last changes fastest.
 template <typename K>
 KernelTable everyVariant(const std::function<bool(const K&)>& is_used = [](const K&) { return true; }) {
     constexpr auto kConstants = K::constants();

@@ -54,7 +54,7 @@ private:
     StreamedWriter& writer_;
 };
 
-// How many splats there are.
+// Returns the number of splats.
 std::uint64_t spillBlocks(const SceneParts& parts, const StreamedWriter::Blocks& blocks,
                           const StreamedWriter& writer, SceneSpill& spill, const Progress& progress) {
     std::uint64_t splats = 0;

@@ -93,7 +93,7 @@ void SplatMeter::record(const Eye& eye, double near, const Picture& picture) {
 bool SplatMeter::hadRoom() {
     const FrameState& state = readback_.mapped<FrameState>()[0];
     const gpu::uint needed = state.targets[0].pairs.needed;  // every splat has room
-    check(needed <= gpu::kMaxItems, "the scene's splats meet too many tiles of a picture to be judged");
+    check(needed <= gpu::kMaxItems, "the scene's splats touch too many tiles of a picture to be judged");
     if (needed <= buffers_.pairs.capacity()) { return true; }
     growFrameBuffers(context_, buffers_, {buffers_.visible.capacity(), roomFor(needed)});
     return false;

@@ -6,8 +6,8 @@
 // Lengths are in the scene's units, angles in radians. Camera axes are OpenCV's: x right, y down, z forward.
 // Quaternions are w, x, y, z.
 //
-// Structures begin with their type and their size, as the program's compiler sees it. Leave all other fields
-// 0 unless you set them; 0 always means the default. A program that was compiled against an earlier header
+// Structures begin with their type and their size, as the program's compiler sees it. Set all other fields to
+// 0 unless you use them; 0 always means the default. A program that was compiled against an earlier header
 // therefore runs with a later library. In an array of structures, the elements are `size` of the first one
 // apart.
 //
@@ -17,7 +17,8 @@
 // output.
 //
 // Threads: calls that are given different objects may run at the same time, and others as far as their
-// comments say. A call that is given one object by way of another, such as a scene in a frame, is given both.
+// comments say. A call that is given an object indirectly, such as a scene in a frame, counts as being given
+// both.
 #ifndef BINOSPLAT_H
 #define BINOSPLAT_H
 
@@ -36,21 +37,21 @@ extern "C" {
 
 typedef struct bsp_device_t* bsp_device;  // a Vulkan device: the library's own, or the program's
 typedef struct bsp_scene_t* bsp_scene;    // splats in its memory
-// Makes pictures, and keeps what the last ones leave for the next.
+// Makes pictures, and keeps what the previous ones leave for the next.
 typedef struct bsp_renderer_t* bsp_renderer;
 
 typedef enum bsp_result {
     BSP_SUCCESS = 0,
-    // A scene is loading, or the device is drawing: not an error, there is no text.
+    // A scene is loading, or the device is drawing. This is not an error, and has no text.
     BSP_NOT_READY = 1,
     BSP_ERROR_INPUT = -1,          // a file or a value
-    BSP_ERROR_OUT_OF_MEMORY = -2,  // of the device or the host: a smaller scene or picture may do
+    BSP_ERROR_OUT_OF_MEMORY = -2,  // of the device or the host: a smaller scene or picture may fit
     BSP_ERROR_NO_DEVICE = -3,      // no Vulkan device, or none with what is needed
     BSP_ERROR_DEVICE_LOST = -4,    // its objects can only be destroyed now
     BSP_ERROR_CANCELLED = -5       // see bsp_scene_cancel
 } bsp_result;
 
-// About this thread's last call that failed, until the next one fails; "" if none has.
+// A line about this thread's last call that failed, until the next one fails; "" if none has.
 BSP_API const char* bsp_error_text(void);
 // "0.1.0".
 BSP_API const char* bsp_version(void);
@@ -87,7 +88,8 @@ typedef void (*bsp_log)(void* user, const char* line);
 typedef struct bsp_device_info {
     uint32_t type, size;  // BSP_TYPE_DEVICE_INFO
     const void* next;
-    // The device's number, or part of its name; null: the first discrete GPU, or else the first that will do.
+    // The device's number, or part of its name; null: the first discrete GPU, or else the first usable
+    // device.
     const char* name;
     bsp_log log;                  // null: no messages
     void* log_user;               // passed to `log`
@@ -100,12 +102,12 @@ typedef struct bsp_device_info {
 BSP_API bsp_result bsp_device_create(const bsp_device_info* info, bsp_device* device);
 // Null is allowed. Destroy its scenes and renderers first.
 BSP_API void bsp_device_destroy(bsp_device device);
-// Its name, valid while the device exists. May run beside any call.
+// The device's name, valid while the device exists. May run at the same time as any call.
 BSP_API const char* bsp_device_name(bsp_device device);
 
 // Scenes. ---------------------------------------------------------------------------------------------------
 
-// The floats of each splat lie together; splats are `stride` bytes apart, or side by side if it is 0.
+// The floats of each splat are adjacent; splats are `stride` bytes apart, or packed if it is 0.
 typedef struct bsp_array {
     const float* values;
     uint64_t stride;
@@ -123,7 +125,8 @@ typedef struct bsp_splats {
     bsp_array sh;
     uint32_t scale_count;  // 2: discs (2DGS); 3: Gaussians (3DGS)
     uint32_t sh_degree;    // 0 to 3
-    // 0: as trainings store them, logarithms of scales and logits of opacities; 1: lengths, and 0 to 1
+    // 0: as training stores them, logarithms of scales and logits of opacities; 1: lengths, and opacities
+    // from 0 to 1
     uint32_t activated;
     uint32_t antialiased;  // 1: Gaussians whose opacities were trained to be dimmed by the low-pass
     double origin[3];      // positions are relative to it; for positions far from 0

@@ -1,5 +1,5 @@
-// C++ over binosplat.h, in headers only: owners that destroy what they hold, and exceptions. Rules, units and
-// threads are those of binosplat.h, which says more about each call.
+// A header-only C++ layer over binosplat.h, with owners that destroy what they hold, and exceptions. Rules,
+// units and threads are those of binosplat.h, which says more about each call.
 #ifndef BINOSPLAT_HPP
 #define BINOSPLAT_HPP
 
@@ -106,7 +106,7 @@ public:
         check(bsp_scene_get_properties(get(), &properties));
         return properties;
     }
-    // Two eyes where to begin.
+    // Both eyes at the start view.
     [[nodiscard]] Views startViews(double eye_distance, double fov_x_rad, unsigned width,
                                    unsigned height) const {
         const bsp_scene_properties start = properties();

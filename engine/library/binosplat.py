@@ -143,7 +143,7 @@ class Device:
 
 def _quaternion(m):
     """Of a rotation matrix: w, x, y, z."""
-    # The greatest of the four components first, which nothing small divides.
+    # The greatest of the four components first, so that nothing is divided by a small number.
     squares = np.array([m[0, 0] + m[1, 1] + m[2, 2], m[0, 0] - m[1, 1] - m[2, 2], m[1, 1] - m[0, 0] - m[2, 2], m[2, 2] - m[0, 0] - m[1, 1]])
     products = np.array([[0, m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]], [0, 0, m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
                          [0, 0, 0, m[2, 1] + m[1, 2]], [0, 0, 0, 0]])

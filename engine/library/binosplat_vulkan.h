@@ -46,8 +46,8 @@ typedef struct bsp_vulkan_device {
     const void* enabled_features;  // the chain that was VkDeviceCreateInfo::pNext
     const char* const* enabled_extensions;
     uint32_t enabled_extension_count;
-    // Called around each use of the queue, since Vulkan requires that of threads that share one; null if no
-    // other thread uses it meanwhile.
+    // Called around each use of the queue, as Vulkan requires of threads that share one; null if no other
+    // thread uses it meanwhile.
     void (*lock_queue)(void* user);
     void (*unlock_queue)(void* user);
     void* queue_user;
@@ -58,9 +58,9 @@ typedef enum bsp_target_flags {
     BSP_TARGET_BLEND = 1,
     // An image without sRGB in its format holds linear light, as in OpenXR, not display-encoded values.
     BSP_TARGET_LIGHT = 2,
-    // With BLEND: `depth` holds the depths of the program's meshes, behind which splats do not show. A single
+    // With BLEND: `depth` has the depths of the program's meshes, which hide splats behind them. A single
     // view, and the views of modes that render both eyes in full (two-pass, shared), test each splat as they
-    // blend it. Other modes reproject pictures that know nothing of meshes: there one depth stands for all
+    // blend it. Other modes reproject pictures that do not contain the meshes: there one depth stands for all
     // splats of a pixel, the mean of what it shows.
     BSP_TARGET_DEPTH_TEST = 4,
     BSP_TARGET_DEPTH_BY_PIXEL = 8  // with DEPTH_TEST: one depth per pixel in any mode
@@ -70,9 +70,9 @@ typedef enum bsp_target_flags {
 typedef struct bsp_target {
     uint32_t type, size;  // BSP_TYPE_TARGET
     const void* next;
-    // Of the view's size and one sample, with VK_IMAGE_USAGE_TRANSFER_DST_BIT, and TRANSFER_SRC to be blended
-    // over. Formats: R8G8B8A8 and B8G8R8A8, each _SRGB or _UNORM; without BLEND also R32G32B32A32_SFLOAT, and
-    // with BSP_FRAME_HALF_FLOATS R16G16B16A16_SFLOAT.
+    // An image of the view's size with one sample, with VK_IMAGE_USAGE_TRANSFER_DST_BIT, and also
+    // TRANSFER_SRC if it is to be blended over. Formats: R8G8B8A8 and B8G8R8A8, each _SRGB or _UNORM; without
+    // BLEND also R32G32B32A32_SFLOAT, and with BSP_FRAME_HALF_FLOATS R16G16B16A16_SFLOAT.
     VkImage colour;
     VkFormat colour_format;
     uint32_t layer;                             // array layer of both images

@@ -1,4 +1,4 @@
-// Frames that are waited for, and their pictures.
+// Frames that the caller waits for, and their pictures.
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
 #include "engine/places/standpoint.h"
@@ -33,7 +33,7 @@ Mode modeOf(bsp_mode mode) {
     fail("mode is {}, must be one of bsp_mode", static_cast<int>(mode));
 }
 
-// The least near depth of its scenes.
+// The smallest near depth of its scenes.
 double usualNear(const AskedFrame& asked) {
     double near = asked.scenes.empty() ? kUsualNear : std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < asked.scenes.size(); ++i) {

@@ -21,15 +21,15 @@
 
 namespace binosplat {
 
-// Scenes of bsp_splats. Throws Error if a field makes no sense.
+// A scene from bsp_splats. Throws Error if a field does not make sense.
 Scene sceneOf(const bsp_splats& splats, LoadNotes& notes);
 
 // Of the first version.
 constexpr std::size_t kFirstViewSize = offsetof(bsp_view, height) + sizeof(std::uint32_t);
-// A view as the engine has it; positions are relative to `origin`.
+// A view in the engine's form; positions are relative to `origin`.
 Eye eyeOf(const bsp_view& view, const glm::dvec3& origin);
 
-// A frame's settings as the engine has them.
+// A frame's settings in the engine's form.
 struct AskedFrame {
     std::vector<Eye> eyes;
     std::vector<std::optional<Gaze>> gazes;
@@ -42,8 +42,8 @@ struct AskedFrame {
     bool is_cut = false, settles = false;
 };
 
-// Brings a scene's changes to the device by submissions of its own, so that frames which the program holds
-// may be dropped.
+// Brings a scene's changes to the device in submissions of its own, so that frames that the program holds may
+// be dropped.
 class ChangeUploads {
 public:
     explicit ChangeUploads(const Context& context) : context_(context) {}
@@ -92,8 +92,8 @@ struct bsp_scene_t {
     ~bsp_scene_t();
 
     [[nodiscard]] const binosplat::GpuScene& onDevice() const { return live ? live->scene() : *gpu; }
-    // For a live scene: requests what the eyes see at that time, and brings what has been loaded; everything,
-    // if it settles.
+    // For a live scene: requests what the eyes see at that time, and uploads what has been loaded, or
+    // everything if it settles.
     void advance(std::span<const binosplat::Eye> eyes, double time_s, bool settles);
 
     [[nodiscard]] bsp_result state(double* progress, bool waits);
@@ -112,8 +112,7 @@ struct bsp_scene_t {
 
 private:
     void load(std::optional<binosplat::Scene> scene, binosplat::LoadNotes notes);
-    // Makes `live`, and returns the scene by which it is judged; nothing if the source neither streams nor
-    // moves.
+    // Makes `live`, and returns a scene that represents it; nothing if the source neither streams nor moves.
     std::optional<binosplat::Scene> openLive(binosplat::LoadNotes& notes,
                                              const binosplat::Progress& progress);
     void judge(const binosplat::Scene& scene, const binosplat::LoadNotes& notes);
@@ -168,7 +167,7 @@ private:
     // Frames show these scenes from now on.
     void show(const binosplat::AskedFrame& asked);
     void showOnDevice(const binosplat::GpuScene& scene);
-    // Shows its scenes as they now are, and drops histories if it says so.
+    // Shows the frame's scenes as they are now, and drops histories if it says so.
     void begin(binosplat::AskedFrame& asked);
     // Records all parts, or none if one fails.
     std::vector<vk::CommandBuffer> lend(binosplat::AskedFrame& asked, Lent& lent);

@@ -53,7 +53,7 @@ void bsp_scene_t::load(std::optional<Scene> scene, LoadNotes notes) {
     const auto stepOf = [this, own = std::this_thread::get_id()](double first, double share) {
         return [=, this](double done) {
             progress_ = first + share * done;
-            // The other threads of a reader go on until it stops.
+            // A reader's other threads go on until it stops.
             if (cancelled && std::this_thread::get_id() == own) { throw Cancelled(); }
         };
     };

@@ -98,7 +98,7 @@ void bsp_renderer_t::readScenes(const bsp_frame_info& frame, AskedFrame& asked) 
           "a frame has a scene and {} instances, must have one of the two", frame.instance_count);
     const auto add = [&](bsp_scene_t* scene) {
         check(scene != nullptr, "the scene of an instance is null");
-        check(&scene->device == &device, "the scene is of another device than the renderer");
+        check(&scene->device == &device, "the scene and the renderer belong to different devices");
         scene->requireThere();
         asked.scenes.push_back(scene);
     };

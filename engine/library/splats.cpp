@@ -63,7 +63,7 @@ void fill(StoredBlock& block, const SplatRows& rows, const bsp_splats& splats, s
     }
 }
 
-// Lengths and opacities as they were given, not as they come back from their logarithms.
+// Keeps lengths and opacities as they were given, not as computed from their logarithms.
 void keepActivated(ActiveBlock& active, const StoredBlock& block, const SplatRows& rows,
                    const bsp_splats& splats, std::uint64_t first) {
     for (std::size_t i = 0; i < active.count; ++i) {

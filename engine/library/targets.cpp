@@ -1,4 +1,4 @@
-// Copies from and to images, with `present` in between.
+// Copies from and to a program's images, with `present` in between.
 #include "engine/library/targets.h"
 
 #include "engine/error.h"

@@ -6,7 +6,7 @@
 
 namespace binosplat {
 
-// In float32, with the remainder of each value beside it; `near` in scene units.
+// In float32, with the remainder of each value; `near` is in scene units.
 gpu::EyeView viewOf(const Eye& eye, double near);
 // The same for a place.
 gpu::Place placeOf(const glm::dvec3& position);

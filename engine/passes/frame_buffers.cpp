@@ -1,4 +1,4 @@
-// Allocating a frame's buffers.
+// Allocates a frame's buffers.
 #include "engine/passes/frame_buffers.h"
 
 #include <algorithm>

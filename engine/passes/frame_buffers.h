@@ -1,5 +1,5 @@
-// The device memory of a frame: what grows with the visible splats (60 bytes each), with the pairs (4 to 16),
-// with the pixels.
+// The device memory of a frame, which grows with the visible splats (60 bytes each), with the pairs (4 to 16
+// bytes each) and with the pixels.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -38,16 +38,16 @@ struct FrameCapacity {
 
 // A target's result in device memory, rows top to bottom.
 struct Picture {
-    Buffer colours;            // four floats a pixel, or four half floats
+    Buffer colours;            // four floats per pixel, or four half floats
     bool half_floats = false;  // which
-    Buffer depths = {};        // D, a float a pixel, if it is wanted and not in the words
+    Buffer depths = {};        // D, a float per pixel, if it is wanted and not in the words
     // If later pictures are made from this one:
-    Buffer words = {};  // a word a pixel, lib/moving_pixel.glsl
+    Buffer words = {};  // a word per pixel, lib/moving_pixel.glsl
     Buffer tiles = {};  // gpu::HistoryTile
     glm::uvec2 size_px{0, 0};
 };
 
-// The arrays over the visible splats lie in one buffer, one after the other.
+// The arrays over the visible splats are in one buffer, one after another.
 class VisibleBuffers {
 public:
     VisibleBuffers() = default;
@@ -79,15 +79,15 @@ private:
     Buffer buffer_;
 };
 
-// Where an eye's (tile, splat) pairs are: a sort goes from one buffer to the other and back, and its result
-// is in either.
+// Where an eye's (tile, splat) pairs are: a sort goes back and forth between two buffers, and its result is
+// in either.
 struct PairArrays {
     KeyValues pairs, spare;
     std::uint32_t capacity = 0;
 };
 
-// Four words a pair. Only one of them outlives the sort: the splats by tile. For an eye that is rendered
-// whole the others are in its picture, which is empty until then, as far as they fit.
+// Four words per pair. Only one of them outlives the sort: the splats by tile. For an eye that is rendered in
+// full, the others are in its picture, which is empty until then, as far as they fit.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
@@ -159,7 +159,7 @@ struct FrameBuffers {
 };
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count, bool in_pages = false);
-// Provides capacity; the lists' contents are lost, and never more than the new size is held.
+// Provides capacity; the lists' contents are lost, and memory for more than the new size is never held.
 void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity);
 
 }  // namespace binosplat

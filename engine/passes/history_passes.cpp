@@ -10,7 +10,7 @@ namespace {
 
 constexpr gpu::uint groupsOver(gpu::uint items, gpu::uint group) { return (items + group - 1) / group; }
 
-// A number of pairs that surely fits, if tiles cost what they did when they were rendered last. Lists grow
+// A number of pairs that certainly fits if tiles cost what they did when they were last rendered. Lists grow
 // when that many are needed.
 gpu::uint mostCost(const FrameCapacity& capacity) { return capacity.pairs - capacity.pairs / 8; }
 

@@ -1,4 +1,4 @@
-// Which variants of which kernels there are.
+// Lists the variants of all kernels.
 #include "engine/passes/pass_kernels.h"
 
 #include "engine/passes/passes.h"
@@ -23,12 +23,12 @@ bool areNarrow(const Context& context, std::uint32_t threads_per_cell) {
     return Sort::hasNarrowSubgroups(context) && threads_per_cell == context.subgroupSize();
 }
 
-// Of cull to rasterize, without sorting.
+// Kernels of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
     KernelTable table = everyVariantOf<CullPagesKernel, BinKernel, BinLargeKernel>();
     append(table, everyVariant<CullKernel>([](const CullKernel& k) { return k.placed <= k.in_pages; }));
     append(table, everyVariant<CompactKernel>([](const CompactKernel& k) { return k.placed <= k.in_pages; }));
-    // Scenes among others each have their own degree.
+    // Scenes that are placed among others each have their own degree.
     append(table, everyVariant<ProjectKernel>(
                       [](const ProjectKernel& k) { return k.placed == 0 || k.sh_degree == kMaxShDegree; }));
     append(table, everyVariant<TileRangesKernel>(
@@ -52,7 +52,7 @@ KernelTable frameKernels(std::uint32_t threads) {
     return table;
 }
 
-// Of one eye from the other.
+// Kernels that make one eye from the other.
 KernelTable warpKernels(const Context& context) {
     KernelTable table = everyVariantOf<WeighKernel, DepthBoundsKernel, EdgeRoisKernel, ReprojectKernel,
                                        NewcomersKernel, ComponentsKernel>();
@@ -71,7 +71,7 @@ KernelTable warpKernels(const Context& context) {
     return table;
 }
 
-// Of an eye from its history.
+// Kernels that make an eye from its history.
 KernelTable historyKernels(bool by_address) {
     KernelTable table = everyVariant<WarpHistoryKernel>(
         [=](const WarpHistoryKernel& k) { return k.by_address == by_address; });
@@ -118,7 +118,8 @@ ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t 
             .by_lanes = by_lanes};
 }
 
-// With coarse tiles there is one kernel for all that a picture may keep, and so there is where meshes cut.
+// With coarse tiles there is one kernel for everything that a picture may keep; so there is if meshes cut
+// splats.
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape,
                                 bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;

@@ -1,4 +1,4 @@
-// The kernels of all passes except those for display: made when they are first needed, so that no mode pays
+// The kernels of all passes except those for display, made when they are first needed, so that no mode pays
 // for another's.
 #pragma once
 

@@ -52,7 +52,7 @@ struct Recording {
     [[nodiscard]] std::uint64_t field(std::uint64_t offset) const {
         return FrameBuffers::targetField(targets.first, offset);
     }
-    // Where the lists' states lie in the frame's.
+    // Where the lists' states are in the frame's state.
     [[nodiscard]] std::uint64_t visibleList() const {
         return targets.chosen && !targets.lists_chosen ? field(offsetof(TargetState, chosen_visible))
                                                        : FrameBuffers::visibleList(targets.list);

@@ -4,8 +4,8 @@
 //   cull        which splats may touch a pixel of any eye
 //   compact     these in the scene's order, with the depth or the distance of their centres
 //   sort_depth  front to back
-//   project     as one eye sees them, and how many tiles each meets
-//   bin         a (tile, splat) pair for each tile a splat meets
+//   project     as one eye sees them, and how many tiles each touches
+//   bin         a (tile, splat) pair for each tile a splat touches
 //   sort_tiles  the pairs by tile, front to back within
 //   rasterize   blending: colour, alpha and depth
 // The passes that make the other eye from this one are in engine/baselines.
@@ -29,14 +29,14 @@ struct Kept {
     bool even_rows = false;
     gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel; that of a history is always this
     bool half_floats = false;                     // colours are stored as half floats
-    // Splats show only where they are nearer than the target's mesh_depths.
+    // Splats are visible only where they are nearer than the target's mesh_depths.
     bool cut = false;
     // Later pictures are going to be made from this one: its words and tiles are kept.
     bool history = false;
 };
 
-// Pictures that a frame renders at once, whole or some tiles: FrameState::views and targets say where they
-// are.
+// Pictures that a frame renders at once, in full or only some tiles; FrameState::views and targets say where
+// they are.
 struct Targets {
     int first = 0, count = 1;
     int list = 0;                 // of the visible splats
@@ -51,7 +51,7 @@ struct Targets {
     bool lists_chosen = false;  // the list holds what touches these, and there is no other one for them
 };
 
-// How many bits distinguish so many tiles, and no tile.
+// How many bits it takes to distinguish this many tiles, and no tile.
 unsigned tileBits(gpu::uint tiles);
 
 // The eyes of a list of visible splats: it holds what any of the eyes [first, first + count) sees, ordered by
@@ -62,9 +62,9 @@ struct EyesOfList {
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
-    // How many pictures are rendered from it at once.
+    // How many pictures are rendered from the list at once.
     int shares = 1;
-    // For when only the chosen tiles of each eye count.
+    // For use if only the chosen tiles of each eye count.
     gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};
 };
 
@@ -77,8 +77,8 @@ RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept
 // Only cull: how many splats are visible.
 void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
                 const EyesOfList& eyes, Role role);
-// The list of these, front to back: compact and sort_depth. Also again, by the depths of another eye;
-// visibility is then not determined again.
+// The list of visible splats, front to back: compact and sort_depth. May be called again with the depths of
+// another eye; visibility is then not determined again.
 void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
                  const EyesOfList& eyes, Role role);
 // The pictures: project to rasterize.

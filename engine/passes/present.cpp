@@ -39,7 +39,7 @@ void Presenter::reserve(glm::uvec2 size_px, bool with_depth) {
 
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
     const bool with_depth = eye.depth && (eye.picture->words.bytes() > 0 || eye.picture->depths.bytes() > 0);
-    // Only grows before anything in this submission uses them: both eyes have the same size.
+    // They only grow before anything in this submission uses them, since both eyes have the same size.
     reserve(eye.size_px, with_depth);
     gpu::PresentPass pass{};
     pass.colours = eye.picture->colours.address<gpu::vec4>();

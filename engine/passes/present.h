@@ -1,4 +1,4 @@
-// From a frame's pictures to the images that a headset's runtime lends for them.
+// Brings a frame's pictures into the images that a headset's runtime lends for them.
 #pragma once
 
 #include "engine/gpu/kernel.h"
@@ -10,14 +10,14 @@ namespace binosplat {
 struct PresentedEye {
     const Picture* picture = nullptr;
     glm::uvec2 size_px{0, 0};
-    // The affiliated eye's, to tint its pixels by how they came about; or null.
+    // The affiliated eye's, to tint its pixels by how they were made; or null.
     const WarpBuffers* tinted_by = nullptr;
     vk::Image colour;  // where the picture goes; 8-bit RGBA or BGRA
     // Where its depth goes, D32: near / depth, 0 where there is nothing; or null.
     vk::Image depth;
-    // Write its alpha, too, multiplied in as headsets blend: as light.
+    // Also write its alpha, by which colours are multiplied in linear light, as headsets blend.
     bool see_through = false;
-    // Bits of each word that keep what the eye before left, as for an anaglyph.
+    // Bits of each word that keep what the previous eye left, as for an anaglyph.
     std::uint32_t kept_bits = 0;
 };
 
@@ -33,18 +33,19 @@ public:
 
     // Makes the kernel for half floats before it is needed.
     void makeKernels();
-    // For pictures of that size, while nothing recorded is in flight. Throws Error if there is no memory for
-    // it.
+    // For pictures of that size, while nothing recorded is in flight. Throws Error if there is not enough
+    // memory.
     void reserve(glm::uvec2 size_px, bool with_depth);
-    // Records it, allocating memory first. `near` in scene units.
+    // Records `present`, allocating memory first. `near` is in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
     // Makes its kernels again, see Context::replacedShaders. Throws Error if one cannot be made, and then
     // keeps the old ones.
     void rebuildKernels() { kernels_.rebuild(); }
     // The bytes of the eye that was recorded last, rows top to bottom, for showing them elsewhere.
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
-    // The same as a view from the same place with other axes shows them. The matrix maps places in the view,
-    // in pixels, to those in the picture. Allocates memory first; only the first of a submission may need to.
+    // The same bytes as seen by a view from the same place with other axes. The matrix maps places in the
+    // view, in pixels, to those in the picture. Allocates memory first; only the first one in a submission
+    // may need to.
     const Buffer& turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px,
                        const glm::dmat3& picture_from_view);
 
@@ -52,7 +53,7 @@ private:
     const Context& context_;
     KernelCache kernels_;
     bool blue_first_, linear_;
-    Buffer pixels_, depths_;  // one eye after the other
+    Buffer pixels_, depths_;  // one eye after another
     Buffer turned_;
 };
 

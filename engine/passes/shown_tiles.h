@@ -16,9 +16,9 @@ class ShownTiles {
 public:
     explicit ShownTiles(const Context& context) : context_(context) {}
 
-    // For the next frame: a byte a tile, row-major, 1 if it is hidden; empty: all are shown.
+    // For the next frame: a byte per tile, row-major, 1 if it is hidden; empty: all are shown.
     void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles);
-    // Before the passes of a frame: brings the mask, and keeps that of the frame before.
+    // Before the passes of a frame: uploads the mask, and keeps that of the frame before.
     void record(Commands& commands);
 
     [[nodiscard]] bool hideAny() const { return !words_.empty(); }

@@ -54,7 +54,7 @@ KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, K
                counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
-    // As few bits a round as possible.
+    // As few bits per round as possible.
     const unsigned rounds = roundsOf(key_bits);
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);

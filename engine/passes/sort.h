@@ -20,12 +20,12 @@ class Sort {
 public:
     // kComparisons only where hasNarrowSubgroups.
     explicit Sort(const Context& context, DigitMatch match = DigitMatch::kAuto);
-    // Its two.
+    // Its two kernels.
     [[nodiscard]] KernelTable kernels() const { return {variantOf(count_), variantOf(scatter_)}; }
 
     static bool hasNarrowSubgroups(const Context& context);
 
-    // Bytes of `histograms` for lists of up to `items`: a byte a key and 34 KiB, 546 KiB at most.
+    // Bytes of `histograms` for lists of up to `items`: a byte per key and 34 KiB, 546 KiB at most.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
     // True if the result of `record` lies in `spare`.
@@ -33,7 +33,7 @@ public:
 
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns
     // whichever of the two holds the result. The length is that of the list at `list_bytes` of `lists`, whose
-    // count of workgroups is used.
+    // number of workgroups is used.
     KeyValues record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare,
                      gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists, std::uint64_t list_bytes,
                      unsigned key_bits) const;

@@ -5,7 +5,7 @@
 
 namespace binosplat {
 
-// The most that resample keeps of a row in shared memory, in kArrivalsStep.
+// How much of a row resample can keep in shared memory, in units of kArrivalsStep.
 std::uint32_t mostRowSteps(const Context& context);
 
 // A frame's requirements.
@@ -14,13 +14,13 @@ struct WarpBufferNeeds {
     bool classes = false;      // of the target's pixels
     bool half_floats = false;  // what pictures consist of
     bool history = false;      // the eye's own history is the source
-    std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 if centre ROIs are off
+    std::uint32_t boxes = 0;   // components of holes that get their own boxes; 0 if centre ROIs are off
     bool operator==(const WarpBufferNeeds&) const = default;
 };
 
-// Arrays over the tiles and the price list are in one buffer, one after the other. Moving pixels and arrivals
-// share memory with the target eye's colours, row by row, as long as resample can keep a row of arrivals in
-// shared memory; otherwise they are here.
+// Arrays over the tiles and the price list are in one buffer, one after another. Moving pixels and arrivals
+// share memory with the target eye's colours, row by row, if resample can keep a row of arrivals in shared
+// memory; otherwise they are here.
 class WarpBuffers {
 public:
     WarpBuffers() = default;
@@ -40,18 +40,18 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
     // The source's depth in the middle of each tile, until the prices replace it.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileDepths() const { return tilePrices(); }
-    // Once tiles are chosen: those of the list that have pairs.
+    // Once tiles are chosen: those in the list that have pairs.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesWithPairs() const { return tilePrices(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return tileArray(4); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileMask() const { return tileArray(5); }
-    // Where these lie.
+    // Tells the target where these are.
     void tell(gpu::TargetState& target) const;
     // The price list, or the counts of depths.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const {
         return tileMask().at(maskWords(needs_.size_px));
     }
     [[nodiscard]] static std::uint64_t tileKindsOffset() { return 0; }
-    // Words of a mask of tiles: one bit each, each row begins a new word.
+    // Words of a mask of tiles: one bit each, with each row beginning a new word.
     static std::uint64_t maskWords(glm::uvec2 size_px);
 
     // The blocks that are made pixel by pixel.
@@ -70,7 +70,7 @@ public:
     }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const Picture& target) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const Picture& target) const;
-    // How many kArrivalsStep a row takes in shared memory, see resample; 0: rows are not kept there.
+    // How many kArrivalsStep a row takes in shared memory (see resample); 0: rows are not kept there.
     [[nodiscard]] std::uint32_t rowSteps() const {
         return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
     }

@@ -7,24 +7,24 @@
 
 namespace binosplat {
 
-// Where an eye looks, for TileChoice::kPredicted: errors that it does not see are not worth rendering again.
+// Where an eye looks, for TileChoice::kPredicted: errors that it does not see are not worth rendering for.
 struct Gaze {
     glm::dvec3 direction{0.0, 0.0, 1.0};  // in the eye's axes, of any length
-    // How far around the gaze everything counts in full: the eye may look there, too.
+    // How far around the gaze everything counts in full, since the eye may look there, too.
     double clear_rad = 0.0;
 };
 
 // `settings` and the eyes, for the device. `row_words`: of a row of moving pixels, see WarpBuffers.
 gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words,
                          const StereoSettings& settings);
-// Initial counters of a frame: modes that do not weigh reproject everything.
+// A frame's initial counters: modes that do not weigh tiles reproject everything.
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 
 // `gaze` for the device.
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
-// Where the source leaves its pixels to be warped, and where they arrive: one word each; and the number of
-// words from a row to the next.
+// Where the source leaves its pixels to be warped, and where they arrive, one word each; and the number of
+// words from one row to the next.
 struct MovingWords {
     gpu::DeviceAddress<gpu::uint> moving, arrivals;
     gpu::uint row_words;

@@ -1,4 +1,4 @@
-// Image files: what a library does in this build, and what it does not.
+// Image files: the part that does not depend on the library used in this build.
 #include "engine/picture/image_io.h"
 
 #include "engine/error.h"

@@ -1,4 +1,4 @@
-// Joining rows.
+// Joins rows.
 #include "engine/picture/join.h"
 
 #include <cstddef>

@@ -5,7 +5,7 @@
 
 namespace binosplat {
 
-// Of the same size: the first is on the left, or above.
+// Pictures of the same size; the first is on the left, or above.
 Image besideOneAnother(const Image& left, const Image& right);
 Image aboveOneAnother(const Image& top, const Image& bottom);
 

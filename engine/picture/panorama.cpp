@@ -14,8 +14,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // How far a face reaches: the tangent of the angle from its middle. At 1 the next one begins.
 constexpr double kReach = 1.1;
-// Pixels of a face for one of the panorama, at the face's middle, where they are widest: as many as places
-// are looked up. Otherwise splats' low-pass, which is narrower towards a face's edge, would limit sharpness.
+// Pixels of a face per pixel of the panorama, at the face's middle, where they are widest: as many as the
+// places that are looked up. Otherwise splats' low-pass, which is narrower towards a face's edge, would limit
+// sharpness.
 constexpr double kFiner = 2.0;
 
 glm::dquat about(const glm::dvec3& axis, double angle_rad) { return glm::angleAxis(angle_rad, axis); }

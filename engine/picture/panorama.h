@@ -17,16 +17,15 @@ struct Panorama {
     glm::uvec2 size_px;
 };
 
-// What a camera at this place with these axes must see for it: an eye of the panorama's own, with pixels per
-// radian as intrinsics.
+// The eye of a panorama that a camera with this pose takes, with pixels per radian as intrinsics.
 Eye panoramaEye(const Panorama& panorama, const Pose& world_from_camera);
 
-// The flat pictures from which the panorama is made. Each reaches a little beyond its edges.
+// The flat pictures from which the panorama is made. Each extends a little beyond its edges.
 std::vector<Eye> facesOf(const Panorama& panorama, const Pose& world_from_camera);
 
-// From pictures of these faces, with four channels: each pixel is the mean of four places, by a cubic kernel.
-// Near an edge one face fades into the next, since splats that are wide for their distance look different
-// along two cameras' axes.
+// From pictures of these faces, with four channels: each pixel is the mean of four samples, taken with a
+// cubic kernel. Near an edge one face fades into the next, since splats that are wide for their distance look
+// different along two cameras' axes.
 Image panoramaOf(const Panorama& panorama, std::span<const Image> faces);
 
 }  // namespace binosplat

@@ -21,8 +21,8 @@ struct FilmTags {
     std::optional<double> width_rad;  // of a panorama
 };
 
-// The box moov of an MP4, with the tags in the descriptions of its pictures. It must not come before the
-// pictures, whose places in the file it names. Throws Error if it is not such a box.
+// The box moov of an MP4, with the tags in the descriptions of its pictures. It must come after the pictures,
+// because it gives their places in the file. Throws Error if it is not such a box.
 std::string withFilmTags(const std::string& moov, const FilmTags& tags);
 
 }  // namespace binosplat

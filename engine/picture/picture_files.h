@@ -10,14 +10,14 @@
 
 namespace binosplat {
 
-// The largest number of values of a picture: a broken file must not exhaust memory.
+// The largest number of values in a picture, since a broken file must not exhaust memory.
 inline constexpr std::uint64_t kMostPictureValues = std::uint64_t{1} << 30;
 
 // If not, the next two are never called.
 bool hasPngAndExr();
-// float32. Throws Error, and then there is no file.
+// In float32. If this throws Error, there is no file.
 void writeExr(const std::filesystem::path& path, const Image& image);
-// 8 bits, from an image with three channels. Throws Error, and then there is no file.
+// With 8 bits, from an image with three channels. If this throws Error, there is no file.
 void writePng(const std::filesystem::path& path, const Image& rgb);
 
 // The same as JPEG; false if this build cannot.

@@ -32,7 +32,7 @@ void writeWithLibrary(const fs::path& path, const OIIO::ImageSpec& spec, OIIO::T
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
     check(output != nullptr, "{}: cannot be written ({})", path.string(), oneLine(OIIO::geterror()));
     const bool opened = output->open(path.string(), spec);
-    // `close` flushes: a full disk may be noticed only there.
+    // `close` flushes, and a full disk may be noticed only then.
     const bool written = opened && output->write_image(type, values);
     const std::string first_error = written ? "" : output->geterror();
     const bool closed = output->close();

@@ -15,17 +15,17 @@ enum class PixelOrigin : std::uint8_t {
     kReprojected,   // reprojected from the dominant picture
     kGap,           // interpolated: a small gap between reprojected pixels
     kHole,          // interpolated: a wide hole for which no tile was rendered
-    kEdgeRoi,       // rendered again: at the picture's border
-    kCenterRoi,     // rendered again: a hole's box
-    kPredictedRoi,  // rendered again: great expected error
+    kEdgeRoi,       // rendered: at the picture's border
+    kCenterRoi,     // rendered: a hole's box
+    kPredictedRoi,  // rendered: large expected error
     kCheap,         // rendered: cheaper than reprojecting
 };
 
-// One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, kTileCheap,
-// or 0 for a tile that stays as reprojected; tiles have kTileSize pixels and are row-major, ceil(width /
-// kTileSize) to a row. `pixel_classes` holds kCovered, kGap or kHole for each pixel, and counts if the tile's
-// kind is 0. An empty list means 0 everywhere. Throws Error if a list has another length than the picture
-// needs, or an unknown value.
+// One PixelOrigin per pixel, row-major. `tile_kinds` has kTileEdge, kTileCenter, kTilePredicted, kTileCheap,
+// or 0 for a tile that stays reprojected; tiles have kTileSize pixels and are row-major, ceil(width /
+// kTileSize) to a row. `pixel_classes` has kCovered, kGap or kHole for each pixel, and counts if the tile's
+// kind is 0. An empty list means 0 everywhere. Throws Error if a list does not have the length that the
+// picture needs, or has an unknown value.
 std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::uint32_t> tile_kinds,
                                        std::span<const std::uint8_t> pixel_classes);
 
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::
 // tiles magenta, cheap ones cyan. Reprojected pixels have none (black, unused).
 glm::vec3 tintOf(PixelOrigin origin);
 
-// The share of the tint in a tinted pixel; the rest is the picture, which keeps the tile's content visible.
+// The share of the tint in a tinted pixel; the rest is the picture, so that the tile's content stays visible.
 inline constexpr float kTintShare = 0.4f;
 
 // The picture (3 channels or more, display-encoded) with every pixel that was not reprojected tinted by its

@@ -1,4 +1,4 @@
-// One resampling by two linear filters.
+// A single resampling with linear filters in both directions.
 #include "engine/picture/turned.h"
 
 #include "engine/parallel.h"
@@ -30,7 +30,7 @@ std::vector<glm::vec4> linearOf(const Image& picture) {
     return pixels;
 }
 
-// A place that is off a pixel's middle by rounding alone counts as the middle.
+// A place that differs from a pixel's middle only by rounding counts as the middle.
 glm::dvec2 settled(const glm::dvec2& place) {
     const glm::dvec2 whole = glm::round(place);
     return {std::abs(place.x - whole.x) < 1e-6 ? whole.x : place.x,

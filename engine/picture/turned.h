@@ -7,8 +7,8 @@
 namespace binosplat {
 
 // What a headset's compositor makes of a picture of `eye` for `view`: each pixel of the view comes from the
-// four around its place in the picture, by linear weights, in linear light. If the view has the picture's own
-// axes and pixels, it gets the pixels as they are.
+// four around its place in the picture, with linear weights, in linear light. If the view has the picture's
+// own axes and pixels, it gets the pixels as they are.
 Image showTurned(const Image& picture, const Eye& eye, const Eye& view);
 
 }  // namespace binosplat

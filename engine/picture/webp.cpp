@@ -1,4 +1,4 @@
-// WebP headers by hand, WebP pixels through libwebp.
+// Reads WebP headers itself, WebP pixels through libwebp.
 #include "engine/picture/webp.h"
 
 #include "engine/error.h"
@@ -27,7 +27,7 @@ std::uint32_t loadWord(std::span<const std::byte> bytes, std::size_t offset) {
 // whether alpha is used.
 constexpr std::size_t kStreamHeaderBytes = 5;
 
-// The chunk VP8L of a file, alone or among others.
+// A file's VP8L chunk, alone or among others.
 std::span<const std::byte> findStream(std::span<const std::byte> file, const std::string& name) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
     check(file.size() >= 12 && text.starts_with("RIFF") && text.substr(8, 4) == "WEBP",
@@ -80,7 +80,7 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name) {
 
 namespace {
 
-// From 0 to 9. The data are mostly noise: 7 takes twice the time, and saves a hundredth.
+// From 0 to 9. The data are mostly noise: 7 takes twice as long, and saves one per cent.
 constexpr int kEffort = 3;
 
 struct WebpMemory {

@@ -1,4 +1,4 @@
-// Lossless WebP pictures as data: eight bits a channel, as they were stored.
+// Lossless WebP pictures as data: eight bits per channel, as they were stored.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -21,7 +21,7 @@ struct Pixels {
 bool canDecodeWebp();
 
 // The size that the header of a lossless WebP file states, to be checked before anything is decoded. Throws
-// Error naming `name` if `file` does not hold a lossless picture.
+// Error naming `name` if `file` does not contain a lossless picture.
 glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name);
 
 // Throws Error naming `name`.
@@ -29,7 +29,7 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name);
 
 inline constexpr std::uint32_t kMaxWebpSide = 16383;
 
-// A lossless file: the same bytes, also where alpha is 0. The sides are 1 to kMaxWebpSide. Throws Error
+// A lossless file: the same bytes, even where alpha is 0. The sides are 1 to kMaxWebpSide. Throws Error
 // naming `name` if memory is short.
 std::vector<std::byte> encodeWebp(const Pixels& pixels, const std::string& name);
 

@@ -1,4 +1,4 @@
-// Changes of axes, and ranges without what is far away.
+// Changes of axes, and extents that ignore what is far away.
 #include "engine/places/lie.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ Axes turned(const Axes& axes, double angle_rad) {
 }  // namespace
 
 Axes axesOf(const glm::dvec3& up, bool y_up) {
-    // As if the scene had been turned about x: one with y up is seen from +z, one with z up from -y.
+    // As if the scene had been turned about x: with y up it is seen from +z, with z up from -y.
     const double side = std::abs(up.y) > 0.7 ? -up.y : y_up ? -1.0 : 1.0;
     glm::dvec3 ahead(0.0, 0.0, std::copysign(1.0, side));
     ahead -= glm::dot(ahead, up) * up;

@@ -1,4 +1,4 @@
-// The lie of a scene's splats: in axes of the wearer's own (right, up and ahead), with the floor kept apart.
+// The lie of a scene's splats, in the wearer's axes (right, up and ahead), with the floor kept separate.
 #pragma once
 
 #include "engine/scene/floor_plane.h"
@@ -24,7 +24,7 @@ struct Axes {
     }
 };
 
-// The front of a scene is the side from which one looks ahead.
+// The front of a scene is the side from which the wearer looks ahead.
 Axes axesOf(const glm::dvec3& up, bool y_up);
 
 struct Range {
@@ -32,7 +32,7 @@ struct Range {
     [[nodiscard]] double middle() const { return 0.5 * (low + high); }
     [[nodiscard]] double length() const { return high - low; }
 };
-// Without a share of the values at either end.
+// The range without a share of the values at either end.
 Range rangeOf(std::vector<double> values, double beyond);
 
 // The scene's properties that do not depend on the standpoint.
@@ -53,8 +53,8 @@ std::vector<double> valuesOf(const std::vector<Spot>& spots, const Of& of) {
     return values;
 }
 
-// Without what is far beyond the rest, such as hills and sky: a landscape has more of that than of where one
-// stands.
+// Without what is far beyond the rest, such as hills and sky: a landscape has more of that than of the place
+// where one stands.
 std::vector<SplatSample> coreOf(std::vector<SplatSample> samples);
 
 Lie lieOf(const std::vector<SplatSample>& samples, const Axes& axes, const std::optional<FloorPlane>& floor);

@@ -1,4 +1,4 @@
-// Places in even sequences, judged by the clearance around them.
+// Takes places from even sequences, and judges them by the clearance around them.
 #include "engine/places/standing_views.h"
 
 #include "engine/places/floor_choice.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostJudged = 8192;
 constexpr double kFovXDegrees = 60.0, kFaceDegrees = 92.0;         // faces of a cube that overlap
-constexpr double kNarrowestDegrees = 1.0, kWidestDegrees = 100.0;  // of what shows a part
+constexpr double kNarrowestDegrees = 1.0, kWidestDegrees = 100.0;  // for a view that shows a part
 constexpr double kGoldenAngle = 2.399963229728653;
 constexpr std::array kHeights{1.0, 0.75, 1.1};  // of the eyes, relative to a standing person's
 // Distances of shells, relative to the one from which everything is seen.
@@ -26,13 +26,13 @@ constexpr std::size_t kFaces = 6;
 
 double fractionOf(double value) { return value - std::floor(value); }
 
-// Two numbers from 0 to 1, evenly spread over the plane however many are taken (Roberts 2018, R2).
+// Two numbers from 0 to 1, evenly spread over the unit square however many are taken (Roberts 2018, R2).
 glm::dvec2 evenPoint(std::size_t i) {
     const auto n = static_cast<double>(i + 1);
     return {fractionOf(0.7548776662466927 * n), fractionOf(0.5698402909980532 * n)};
 }
 
-// From the middle of what is looked at.
+// A view from a shell around the middle of what is looked at.
 View viewOfShell(const View& start, const Axes& axes, bool has_floor, std::size_t i) {
     const double distance = glm::length(start.eye - start.look) * kDistances.at(i % kDistances.size());
     const double lowest = std::sin(glm::radians(has_floor ? 4.0 : -50.0)),
@@ -120,7 +120,7 @@ std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::
     for (std::size_t i = 0; i < count; ++i) {
         View view = places[i * places.size() / count];
         const double distance = glm::distance(view.eye, middle);
-        // Inside a part one looks ahead.
+        // Inside a part, the view is straight ahead.
         if (distance > 0.1 * radius) { view.look = middle; }
         const double half = distance > radius ? glm::degrees(std::asin(radius / distance)) : kWidestDegrees;
         view.fov_x_deg = std::clamp(2.0 * half, kNarrowestDegrees, kWidestDegrees);

@@ -1,4 +1,4 @@
-// Judges by what is around a place, in axes of the wearer's own.
+// Judges a place by what is around it, in the wearer's axes.
 #include "engine/places/standpoint.h"
 
 #include "engine/places/floor_choice.h"
@@ -23,7 +23,7 @@ constexpr double kEyeHeightMetres = 1.6;
 constexpr double kLeastRoomHeightMetres = 1.8, kHollow = 0.04;
 constexpr double kMostDense = 0.25;  // around a head, relative to the density of evenly spread splats
 constexpr std::size_t kFewInSector = 4;
-constexpr int kGrid = 15;                           // places to stand that are tried, along each side
+constexpr int kGrid = 15;                           // places that are tried, along each side
 constexpr int kCells = 24;                          // of the longest side, to find dense parts
 constexpr double kLookDown = 0.45, kLookUp = 0.25;  // tangents
 
@@ -32,8 +32,8 @@ std::size_t sectorOf(double x, double z) {
     return static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
 }
 
-// In how many directions around the middle something stands where the floor ends, or, without a floor, far
-// from the middle; and the number of directions.
+// The number of directions around the middle in which something stands where the floor ends or, without a
+// floor, far from the middle.
 int surroundingSectors(const Lie& lie) {
     struct Sector {
         std::vector<double> floor, standing;
@@ -151,7 +151,7 @@ std::optional<glm::dvec3> findDensest(const Lie& lie) {
                       lie.z.low + (found[2] + 0.5) * side);
 }
 
-// The distance from there to what is near, leaving out two in a thousand.
+// The distance from there to what is near, ignoring two splats in a thousand.
 double clearanceAt(const std::vector<Spot>& spots, double x, double h, double z,
                    std::vector<double>& distances) {
     distances.clear();
@@ -161,8 +161,8 @@ double clearanceAt(const std::vector<Spot>& spots, double x, double h, double z,
     return findQuantile(distances, 0.002);
 }
 
-// True if a head has free space around it, and something stands at a distance on most sides: within something
-// solid, splats are as dense as anywhere.
+// True if a head has free space around it, and there is something at a distance on most sides; inside
+// something solid, splats are as dense as anywhere.
 bool hasRoom(const Lie& lie, const std::vector<Spot>& spots, const glm::dvec3& head, double radius) {
     std::array<std::vector<double>, kSectors> sectors;
     double near = 0.0;
@@ -185,7 +185,7 @@ struct Place {
     double clearance = 0.0;
 };
 
-// The best place inside, if there is one with space around it.
+// The best place inside that has space around it, if there is one.
 std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
     const std::optional<glm::dvec3> densest = findDensest(lie);
     if (!densest) { return std::nullopt; }
@@ -234,7 +234,7 @@ std::string explainUp(const StandpointWish& wish, const UpHints& hints,
     return fmt::format("{}, as no floor was found", whose);
 }
 
-// From in front, level, or a little from above if things stand on a floor.
+// From the front, level, or from slightly above if things stand on a floor.
 Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
     std::vector<Spot> object;
     std::ranges::copy_if(lie.spots, std::back_inserter(object),
@@ -245,9 +245,9 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
         return rangeOf(valuesOf(object, [&](const Spot& spot) { return std::optional(spot.*axis); }), 0.05);
     };
     const Range x = along(&Spot::x), h = along(&Spot::h), z = along(&Spot::z);
-    // A sphere around the common box fills the picture's width; around a point it holds a usual splat, and at
-    // least half a unit. If splats are spread evenly, the tenth left out at the ends makes the box a ninth
-    // longer.
+    // A sphere around the common box fills the picture's width; around a point it contains a usual splat, and
+    // at least half a unit. If splats are spread evenly, the tenth that is ignored at the ends makes the box
+    // a ninth longer.
     double radius = 0.5 / 0.9 * glm::length(glm::dvec3(x.length(), h.length(), z.length()));
     std::vector<double> reaches =
         valuesOf(object, [](const Spot& spot) { return std::optional(spot.reach); });

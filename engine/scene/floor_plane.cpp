@@ -14,13 +14,13 @@ namespace {
 
 constexpr int kTries = 1500;                // of either kind
 constexpr std::size_t kFewForFloor = 256;   // fewer do not make a floor
-constexpr std::size_t kMostAtFirst = 2048;  // samples by which a try is judged
+constexpr std::size_t kMostAtFirst = 2048;  // samples by which each try is judged
 constexpr std::size_t kKept = 12;           // tries that are fitted
 constexpr double kAlikeCosine = 0.9962;     // 5 degrees
 constexpr double kThickness = 0.01;         // of the size, to each side
 constexpr double kLeastShare = 0.08;        // of all splats
 constexpr double kMostBehind = 0.15;        // of the others
-// Share of the size: the standard deviation of a corridor an eighth as wide as long.
+// Share of the size: the standard deviation of a corridor that is an eighth as wide as it is long.
 constexpr double kLeastAcross = 0.03;
 
 struct Plane {
@@ -118,8 +118,8 @@ bool isLike(const Plane& a, const Plane& b, const glm::dvec3& middle, double thi
     return side * glm::dot(a.normal, b.normal) > kAlikeCosine && std::abs(apart) < 2.0 * thickness;
 }
 
-// Those with the most splats, each unlike the others: a table full of things is tried a hundred times before
-// the ground beneath it.
+// Those with the most splats, no two alike: a table full of things is tried a hundred times before the ground
+// beneath it.
 std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm::dvec3& middle,
                           double thickness) {
     std::ranges::sort(tried, std::greater<>(), &Plane::inliers);
@@ -158,7 +158,7 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
         covariance += glm::outerProduct(sample.centre - mean, sample.centre - mean) /
                       static_cast<double>(plane.inliers);
     }
-    // The direction within the plane with the smaller spread: what is left of the larger one's share.
+    // The smaller spread within the plane: what remains after the larger one's share.
     const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
     glm::dvec3 longest = glm::dvec3(0.3, 0.5, 0.8);
     for (int i = 0; i < 32; ++i) { longest = glm::normalize(covariance * longest + 1e-300); }
@@ -177,7 +177,7 @@ std::vector<SplatSample> sampleSplats(const Scene& scene, std::size_t most) {
     std::vector<SplatSample> samples;
     const std::size_t step = scene.size() / most + 1;
     for (std::size_t begin = 0; begin < scene.size(); begin += step) {
-        // One of each `step`, but not always the same one: files have an order.
+        // One out of each `step`, but not always the same one, since files have an order.
         std::uint64_t mixed = (begin / step + 1) * 0x9e3779b97f4a7c15u;
         mixed ^= mixed >> 32;
         const std::size_t i = std::min<std::size_t>(begin + mixed % step, scene.size() - 1);
@@ -203,8 +203,8 @@ std::vector<FloorPlane> findPlanes(const std::vector<SplatSample>& samples) {
     glm::dvec3 middle;
     const double size = sizeOf(samples, middle), thickness = kThickness * size;
     if (!(size > 0.0) || !std::isfinite(size)) { return {}; }
-    // Planes around each of the axes have a best of their own: elsewhere there may be many tries that are
-    // better, but are not floors.
+    // The best planes are kept separately for each of the axes: elsewhere there may be many tries that are
+    // better but are not floors.
     std::array<std::vector<Plane>, 3> about;
     for (const Plane& plane : tryPlanes(samples, thickness)) {
         const glm::dvec3 along = glm::abs(plane.normal);

@@ -1,4 +1,4 @@
-// Every array of a scene, by the same indices.
+// Picks the same splats from every array of a scene.
 #include "engine/scene/pick_splats.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@ namespace binosplat {
 
 namespace {
 
-// Its harmonics, with bands of zeros up to that degree.
+// The scene's harmonics, padded with bands of zeros up to `degree`.
 std::vector<float> widened(const Scene& scene, int degree) {
     const auto from = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)),
                to = static_cast<std::size_t>(3 * shCoefficientCount(degree));

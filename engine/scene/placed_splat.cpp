@@ -8,7 +8,7 @@ namespace binosplat {
 
 namespace {
 
-// How closely a single-precision file's rotation is one.
+// How far a rotation from a single-precision file may be from an exact one.
 constexpr double kAlike = 1e-5;
 
 // A unit vector at right angles to a unit vector.
@@ -31,7 +31,7 @@ bool isSimilarity(const glm::dmat3& matrix) {
 }
 
 glm::dmat3 nearestRotation(const glm::dmat3& matrix) {
-    // Newton's iteration (Higham 1986); it would take some steps just for the scale of a similarity.
+    // Newton's iteration (Higham 1986); it would need some steps for the scale of a similarity alone.
     glm::dmat3 q = matrix / std::cbrt(std::abs(glm::determinant(matrix)));
     for (int step = 0; step < 60; ++step) {
         const glm::dmat3 next = 0.5 * (q + glm::transpose(glm::inverse(q)));
@@ -75,7 +75,7 @@ Ellipsoid place(const glm::dmat3& matrix, const Ellipsoid& ellipsoid) {
         directions[i] = axes[i] / placed.scales[i];
         ++known;
     }
-    // Axes without extent point where the others do not.
+    // Axes without extent get the directions that the others leave.
     if (known == 0) { directions = glm::dmat3(1.0); }
     for (int i = 0; i < 3 && known > 0; ++i) {
         const int next = (i + 1) % 3, after = (i + 2) % 3;

@@ -1,4 +1,4 @@
-// Splats under a transform that need not be rigid: a Gaussian remains one, since its covariance is
+// Splats under a transform that need not be rigid: a Gaussian remains a Gaussian, since its covariance is
 // transformed with it.
 #pragma once
 

@@ -1,4 +1,5 @@
-// Changes to a whole scene: fewer bands, another origin, a part of it, discs from Gaussians.
+// Changes to a whole scene: fewer bands of harmonics, another origin, only a part of it, discs made from
+// Gaussians.
 #include "engine/scene/scene.h"
 
 #include "engine/scene/pick_splats.h"

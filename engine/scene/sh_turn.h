@@ -1,4 +1,4 @@
-// Harmonics seen in other axes: each band turns into itself.
+// Harmonics in other axes: each band is transformed within itself.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,7 +16,7 @@ public:
     void apply(float* rest, int sh_degree) const;
 
 private:
-    // By band, from 1 on: its (2 l + 1)^2 matrix, row by row.
+    // For each band, from 1 on: its (2 l + 1)^2 matrix, row by row.
     std::array<std::array<double, 49>, 3> bands_{};
 };
 

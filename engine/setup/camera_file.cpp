@@ -1,4 +1,4 @@
-// cameras.json as a 3DGS or 2DGS training leaves it; errors in entries name the camera and the key.
+// cameras.json as 3DGS or 2DGS training leaves it; errors in entries name the camera and the key.
 #include "engine/setup/camera_file.h"
 
 #include "engine/error.h"
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Where in the file we are, for messages.
+// The current place in the file, for messages.
 struct Place {
     std::string file;
     std::size_t camera;

@@ -1,4 +1,4 @@
-// cameras.json of a 3DGS or 2DGS training.
+// cameras.json from 3DGS or 2DGS training.
 #pragma once
 
 #include "engine/geometry.h"
@@ -19,7 +19,7 @@ struct FileCamera {
 // camera and key. Positions become relative to `origin`, the scene's (Scene::origin).
 std::vector<FileCamera> readCameraFile(const std::filesystem::path& path, const glm::dvec3& origin);
 
-// The same view with another number of pixels; fx, fy, cx, cy are scaled with it.
+// The same view with another number of pixels; fx, fy, cx, cy are scaled accordingly.
 Eye resize(const Eye& eye, glm::uvec2 size_px);
 
 }  // namespace binosplat

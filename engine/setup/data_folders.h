@@ -8,9 +8,9 @@
 
 namespace binosplat {
 
-// The folders that may hold configs/, in order of precedence: $BINOSPLAT_DATA, the working directory, those
-// above the program (a build inside the source tree), and ../share/binosplat beside its folder (an installed
-// program).
+// The folders that may contain configs/, in order of precedence: $BINOSPLAT_DATA, the working directory, the
+// folders above the program (a build inside the source tree), and ../share/binosplat next to its folder (an
+// installed program).
 std::vector<std::filesystem::path> dataFolders();
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Head motion: recorded axes to the camera's, and poses between samples.
+// Head motion: converts recorded axes to the camera's, and interpolates poses between samples.
 #include "engine/setup/head_motion.h"
 
 #include "engine/error.h"
@@ -50,7 +50,7 @@ HeadMotion HeadMotion::startingAt(double from_s) const {
 std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment,
                                const std::string& file) {
     constexpr double kMostFrames = 1e6;  // numbers of six digits
-    constexpr double kRounding = 1e-6;   // of a frame: a sample on the beat counts despite rounding
+    constexpr double kRounding = 1e-6;   // of a frame: a sample exactly at a frame counts despite rounding
     std::vector<double> times_s;
     if (!segment.rate_hz) {
         for (const HeadSample& sample : motion.samples()) {

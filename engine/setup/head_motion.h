@@ -17,7 +17,7 @@ enum class MotionAxes {
     kUnity,   // left-handed, the wearer looks along +z: recordings of Unity applications
 };
 
-// A recorded pose in the camera's axes (x right, y down, z forward), head and world alike. Lengths stay in
+// A recorded pose in the camera's axes (x right, y down, z forward), for both head and world. Lengths stay in
 // metres.
 Pose poseFromRecording(const glm::dvec3& position, const glm::dquat& orientation, MotionAxes axes);
 
@@ -31,21 +31,21 @@ public:
     // At least one sample, times strictly increasing from 0.
     explicit HeadMotion(std::vector<HeadSample> samples, std::string note = {});
 
-    // A sentence on what was left out of its file; empty: nothing.
+    // A sentence about what was skipped in its file; empty: nothing.
     [[nodiscard]] const std::string& note() const { return note_; }
     [[nodiscard]] const std::vector<HeadSample>& samples() const { return samples_; }
     [[nodiscard]] double duration_s() const { return samples_.back().time_s; }
 
-    // The pose at a time since the first sample: positions linearly, orientations by the shorter great arc
-    // (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3). Before the first
-    // and after the last sample the head rests.
+    // The pose at a time since the first sample: positions are interpolated linearly, orientations along the
+    // shorter great arc (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3).
+    // Before the first and after the last sample, the head is at rest.
     [[nodiscard]] Pose poseAt(double time_s) const;
 
     // The motion from this second to the last sample; its times begin at 0 with the pose there.
     [[nodiscard]] HeadMotion startingAt(double from_s) const;
 
-    // A camera that starts at `world_from_start` and moves relative to it as the head does relative to its
-    // first pose, with `units_per_metre` scene units to a metre: world_from_camera at `time_s`.
+    // world_from_camera at `time_s` for a camera that starts at `world_from_start` and moves relative to it
+    // as the head does relative to its first pose, with `units_per_metre` scene units per metre.
     [[nodiscard]] Pose cameraAt(double time_s, const Pose& world_from_start,
                                 double units_per_metre = 1.0) const;
 
@@ -67,7 +67,7 @@ struct MotionSegment {
 std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment,
                                const std::string& file);
 
-// A file as xr/simulated/files/motion_file.h describes it. Throws Error with file and line.
+// Reads a file as described in xr/simulated/files/motion_file.h. Throws Error with file and line.
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes);
 
 // The same from a later second. Throws Error if the recording ends before it.

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Outwards is to the left for the left eye; y points down, so a positive turn about it carries z towards x.
+// Outwards is to the left for the left eye; y points down, so a positive turn about it moves z towards x.
 glm::dquat outwardTurn(int side, double canting_rad) {
     return glm::angleAxis(side == kLeft ? -canting_rad : canting_rad, glm::dvec3(0.0, 1.0, 0.0));
 }

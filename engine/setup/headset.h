@@ -28,11 +28,11 @@ Headset readHeadset(const std::filesystem::path& path);
 // of dataFolders() that has it. Throws Error listing the available names.
 std::filesystem::path findHeadset(const std::string& name);
 
-// Both eyes of a wearer whose midpoint between the eyes is at `world_from_middle`.
+// Both eyes of a wearer; the midpoint between them is at `world_from_middle`.
 std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance,
                                glm::uvec2 size_px);
 
-// The eye for `mono`, midway: its angles hold both eyes' views of far things.
+// The eye for `mono`, midway between both: its angles cover both eyes' views of distant things.
 Eye headsetMiddle(const Headset& headset, const Pose& world_from_middle, glm::uvec2 size_px);
 
 }  // namespace binosplat

@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace fs = std::filesystem;
 
-// As long as most names of files that are written.
+// As long as most names of written files.
 static constexpr const char* kLongName = "frame_000000_a_name_of_the_usual_length";
 
 OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
@@ -34,7 +34,8 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
              folder_.string(), error ? error.message() : "not a directory");
     }
     // A folder made inside proves that the place is writable, whatever its permission bits say; a file in
-    // that, that its path is not too long: some systems then make the folder, but nothing in it.
+    // that folder proves that the path is not too long: otherwise some systems make the folder, but nothing
+    // in it.
     makeStaging();
     const fs::path probe = staging_ / kLongName;
     const bool fits = createFile(probe) != nullptr && entriesOf(staging_) == std::vector<fs::path>{probe};
@@ -78,8 +79,8 @@ void OutputFiles::removeUnpublished() noexcept {
 
 void OutputFiles::publish() {
     if (staging_.empty()) { return; }
-    // A folder in a file's place, or a pipe or a device, which moving would replace, is known before the
-    // first file moves.
+    // A folder in a file's place, or a pipe or a device, which moving would replace, must be noticed before
+    // the first file moves.
     const std::vector<fs::path> staged = entriesOf(staging_);
     for (const fs::path& entry : staged) {
         const fs::path target = folder_ / entry.filename();

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-// The library's own warnings are not ours.
+// Warnings in the library are not our concern.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"

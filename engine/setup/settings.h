@@ -1,5 +1,4 @@
-// Settings as text with their place of origin, so that the command line and TOML files are checked by the
-// same code.
+// Settings as text, with where they come from, so that the same code checks the command line and TOML files.
 #pragma once
 
 #include <filesystem>

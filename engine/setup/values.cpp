@@ -1,4 +1,4 @@
-// Typed values out of settings.
+// Typed values from settings.
 #include "engine/setup/values.h"
 
 #include "engine/error.h"
@@ -82,7 +82,7 @@ glm::dvec3 readVector(const Setting& setting) {
 
 glm::dvec3 readDirection(const Setting& setting) {
     const std::optional<glm::dvec3> vector = parseVector(setting.text());
-    // Not so long or short that its square is no number.
+    // Not so long or short that its square would not be a number.
     if (!vector || !(glm::length(*vector) > 1e-100 && glm::length(*vector) < 1e100)) {
         refuse(setting, "a direction x,y,z, not 0,0,0");
     }

@@ -1,4 +1,4 @@
-// One file after the other, with all its requested parts.
+// Loads one file after another, with all its requested parts.
 #include "engine/stream/chunk_loader.h"
 
 #include "engine/error.h"
@@ -117,7 +117,7 @@ std::vector<LeafLevel> ChunkLoader::wishesIn(std::size_t file) const {
         const bool is_any_left = std::ranges::any_of(*wishes, [&](LeafLevel at) {
             return rangeOf(at).file != file && !troubles_[rangeOf(at).file].broken;
         });
-        if (is_any_left) { break; }  // finer ones have their turn later
+        if (is_any_left) { break; }  // finer levels have their turn later
     }
     return all;
 }

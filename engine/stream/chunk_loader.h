@@ -1,4 +1,5 @@
-// Loads parts of a streamed scene beside the frames: what is requested, in that order, on threads of its own.
+// Loads parts of a streamed scene alongside the frames: what is requested, in that order, on threads of its
+// own.
 #pragma once
 
 #include "engine/files/sog_splats.h"
@@ -20,8 +21,8 @@
 
 namespace binosplat {
 
-// A level of a leaf, decoded, with three scales a splat even if these are discs. It may have fewer splats
-// than the tree says: broken ones are skipped.
+// A level of a leaf, decoded, with three scales per splat even for discs. It may have fewer splats than the
+// tree says: broken ones are skipped.
 struct LoadedPart {
     LeafLevel at;
     std::uint32_t splats = 0;
@@ -31,9 +32,9 @@ struct LoadedPart {
 
 struct LoaderSettings {
     int threads = 2;                         // that decode at a time
-    std::uint64_t waiting_splats = 1 << 20;  // decoded and not taken yet: beyond this, decoding waits
-    std::size_t kept_files = 2;              // decoded, in case more of them is wanted
-    // Pause before a file from the web is tried again; doubled each time.
+    std::uint64_t waiting_splats = 1 << 20;  // decoded but not taken yet: beyond this, decoding waits
+    std::size_t kept_files = 2;              // decoded files, in case more is wanted from them
+    // Pause before a file from the web is tried again; it doubles each time.
     std::chrono::milliseconds first_pause{1000};
     std::chrono::milliseconds most_pause{30000};
     std::function<void(LoadedPart&)> finish = {};  // further work on a part, on the loader's threads
@@ -51,27 +52,28 @@ public:
     ChunkLoader(std::unique_ptr<ChunkSource> source, LoaderSettings settings);
     ChunkLoader(const ChunkLoader&) = delete;
     ChunkLoader& operator=(const ChunkLoader&) = delete;
-    // Gives up where it can, and waits for the rest.
+    // Abandons what it can, and waits for the rest.
     ~ChunkLoader();
 
     [[nodiscard]] const ChunkSource& source() const { return *source_; }
 
-    // From now on these are wished for, and nothing else; they must not include what was taken already.
-    // `finer` is begun when nothing of `coarsest` is left to load. False if that was not heard: who never
-    // waits finds this and what follows false and empty while the loader looks through its lists.
+    // From now on, these and nothing else are wanted; they must not include what has been taken already.
+    // `finer` is begun when nothing of `coarsest` is left to load. False if the request was not received: for
+    // callers that never wait, this and the following return false or nothing while the loader looks through
+    // its lists.
     bool want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer, Waits waits = Waits::kBriefly);
-    // The parts that are loaded, in the order of the wishes.
+    // The parts that have been loaded, in the order in which they were requested.
     [[nodiscard]] std::vector<LoadedPart> take(Waits waits = Waits::kBriefly);
-    // One sentence for each file that is broken or missing, and one each time that a server does not answer;
-    // each only once.
+    // A sentence for each file that is broken or missing, and one each time a server does not answer; each
+    // only once.
     [[nodiscard]] std::vector<std::string> takeLines(Waits waits = Waits::kBriefly);
-    // By file: true if it cannot be had now. Wishes in such files are not loaded.
+    // For each file: true if it is unavailable now. Requests for parts of such files are not loaded.
     [[nodiscard]] std::optional<std::vector<bool>> brokenFiles(Waits waits = Waits::kBriefly) const;
-    // True if every wish was taken or cannot be had.
+    // True if everything requested has been taken or is unavailable.
     [[nodiscard]] bool isDone(Waits waits = Waits::kBriefly) const;
     [[nodiscard]] std::optional<LoaderWork> tryWork() const;
-    // Waits until there is something to take, a file is broken, or all is done; false if the time is up
-    // first.
+    // Waits until there is something to take, a file turns out to be broken, or everything is done; false if
+    // the time runs out first.
     bool waitForNews(std::chrono::milliseconds most) const;
 
 private:
@@ -91,7 +93,7 @@ private:
     [[nodiscard]] const LodRange& rangeOf(LeafLevel at) const {
         return source_->leaves()[at.leaf].levels[at.level];
     }
-    // With the mutex held. The file of the first wish that can be loaded.
+    // With the mutex held: the file of the first request that can be loaded.
     [[nodiscard]] std::optional<std::size_t> nextFile() const;
     [[nodiscard]] std::vector<LeafLevel> wishesIn(std::size_t file) const;
     [[nodiscard]] std::vector<std::size_t> filesAhead() const;

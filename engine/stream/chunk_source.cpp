@@ -12,14 +12,14 @@ namespace binosplat {
 
 namespace {
 
-// Around everything there is.
+// Around everything that can be loaded.
 constexpr float kEverywhere = 1e6f;
 
 }  // namespace
 
 bool isStreamedScene(const std::string& source) {
     if (isBuiltin(source)) { return false; }
-    // The content of an address is only known once it is fetched; only one whose name says so is taken for a
+    // The content of an address is unknown until it is fetched, so only one whose name says so counts as a
     // streamed scene.
     if (isAddress(source)) {
         return source.substr(0, source.find_first_of("?#")).ends_with("/lod-meta.json");

@@ -1,5 +1,5 @@
-// The place of a streamed scene: a folder, its lod-meta.json, or the address of one. Its tree, and its chunks
-// one by one.
+// The source of a streamed scene: a folder, its lod-meta.json, or the address of one. Gives its tree, and its
+// chunks one by one.
 #pragma once
 
 #include "engine/files/streamed_chunks.h"
@@ -13,8 +13,8 @@
 
 namespace binosplat {
 
-// True if `source` is a streamed scene: a folder or file by what it holds, an address by its name. Throws
-// Error for a file that cannot be read.
+// True if `source` is a streamed scene: judges a folder or file by its content, an address by its name.
+// Throws Error for a file that cannot be read.
 bool isStreamedScene(const std::string& source);
 
 // For one thread at a time.

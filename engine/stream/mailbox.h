@@ -1,5 +1,5 @@
-// What is asked of a thread of its own, one question at a time. Whoever asks never waits for the answer
-// before the one that is taken.
+// Questions to a thread of its own, one at a time. The caller never waits: it takes an answer once there is
+// one.
 #pragma once
 
 #include <condition_variable>
@@ -36,7 +36,7 @@ public:
         thread_.join();
     }
 
-    // Replaces a question that was not begun yet. False if the thread is just looking: ask again.
+    // Replaces a question that has not been begun yet. False if the thread is just looking: ask again.
     [[nodiscard]] bool ask(Question&& question) {
         const std::unique_lock lock = lockOf(mutex_, Waits::kNever);
         if (!lock) { return false; }

@@ -1,4 +1,4 @@
-// From time to scene frames, and from these to the device.
+// Finds the scene frames for a time, and brings them to the device.
 #include "engine/stream/moving_scene.h"
 
 #include "engine/error.h"
@@ -12,9 +12,9 @@
 namespace binosplat {
 namespace {
 
-// A time that should begin a frame may fall slightly before it.
+// A time at which a frame should begin may be slightly before it.
 constexpr double kHairFrames = 1e-4;
-// A time that advances by more than this, or goes back, was set.
+// If the time advances by more than this, or goes back, it was set.
 constexpr double kMostStepSeconds = 0.5;
 // For frames with more splats than the sizes of files suggest.
 constexpr double kSpareRoom = 1.25;
@@ -48,7 +48,7 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
         static_cast<std::uint32_t>(std::min(pages * series_.growth() * kSpareRoom,
                                             double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
         kSparePages;
-    // A scene frame is shown as a whole or not yet.
+    // A scene frame is shown as a whole, or not yet.
     options.most_bytes_a_frame = options.capacity_pages * ChunkLayout(gpu::kPageSplats, traits_).bytes;
     resident_ = std::make_unique<ResidentScene>(context_, traits_, options);
     for (const PackedPages& page : shown_) { parts_.push_back(resident_->add(PackedPages(page)).value()); }
@@ -160,7 +160,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
     const auto placeOf = [](Moment moment) {
         return static_cast<double>(moment.frame) + static_cast<double>(moment.share);
     };
-    // How far one is behind another, the shorter way around the loop.
+    // How far one moment is behind another, the shorter way around the loop.
     const auto behind = [&](Moment moment, Moment other) {
         const double distance = placeOf(other) - placeOf(moment);
         return distance - frames * std::round(distance / frames);
@@ -177,7 +177,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
     if (!settings_.blend && following.frame == now.frame && (moment_.frame == now.frame || is_broken)) {
         following.frame = (now.frame + 1) % series_.size();
     }
-    // A step to a later time than that was meant for another pace.
+    // A step to a later time than that was prepared for another pace.
     if (next_ && behind(following, next_->moment) > kHairFrames) { next_.reset(); }
     if (!next_ && !is_asked_ && !(following == moment_)) { ask(following); }
 }

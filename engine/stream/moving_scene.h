@@ -1,4 +1,4 @@
-// A scene that moves, as frames see it: the scene frame for the time, or an interpolation between two.
+// A scene that moves, as frames see it: the scene frame for a time, or an interpolation between two.
 #pragma once
 
 #include "engine/files/scene_series.h"
@@ -19,7 +19,7 @@ namespace binosplat {
 struct MovingSettings {
     double rate_hz = 30.0;           // scene frames per second
     bool blend = false;              // interpolate between two frames, if their splats correspond
-    std::uint64_t memory_bytes = 0;  // of the host, for frames that are read ahead; 0: as SeriesLoader has it
+    std::uint64_t memory_bytes = 0;  // of the host, for frames that are read ahead; 0: SeriesLoader's default
     int threads = 1;                 // that read
     // How the scene is drawn; on any thread.
     std::function<void(Scene&, LoadNotes&)> draw_as = {};
@@ -27,8 +27,8 @@ struct MovingSettings {
 
 class MovingScene final : public LiveScene {
 public:
-    // Reads the first frame; see notes(). Throws Error if it cannot be loaded, or the device lacks memory for
-    // it.
+    // Reads the first frame; see notes(). Throws Error if it cannot be loaded, or the device does not have
+    // enough memory for it.
     MovingScene(const Context& context, SceneSeries series, MovingSettings settings,
                 const Progress& progress = {});
 
@@ -39,9 +39,9 @@ public:
     // The length of the loop.
     [[nodiscard]] double seconds() const { return static_cast<double>(series_.size()) / settings_.rate_hz; }
     [[nodiscard]] double rateHz() const { return settings_.rate_hz; }
-    // The frame of the time, 0 .. size() - 1.
+    // The frame for a time, 0 .. size() - 1.
     [[nodiscard]] std::size_t frameAt(double time_s) const { return momentAt(time_s).frame; }
-    // The first frame, for finding out how a scene lies; can be taken once.
+    // The first frame, to find out how the scene lies; can be taken once.
     [[nodiscard]] Scene takeFirst() { return std::move(first_); }
     [[nodiscard]] const LoadNotes& notes() const { return notes_; }
 
@@ -52,12 +52,12 @@ public:
     [[nodiscard]] bool isSettled() const override;
     [[nodiscard]] double share() const override { return 1.0; }
     [[nodiscard]] StreamCounters counters() const override;
-    // Of files that are broken only for display, which never waits: settle() throws if it lacks what it
-    // needs.
+    // Broken files are reported here only for display, which never waits: settle() throws if something that
+    // it needs is missing.
     [[nodiscard]] std::vector<std::string> takeLines(Waits waits) override;
 
 private:
-    // A scene frame, and how far it is on to the next.
+    // A scene frame, and how far it is on the way to the next.
     struct Moment {
         std::size_t frame = 0;
         float share = 0.0f;
@@ -70,20 +70,20 @@ private:
     };
     struct Question {
         Moment moment;
-        SeriesLoader::Held first, second;  // `second` is null if nothing lies between
+        SeriesLoader::Held first, second;  // `second` is null if nothing is interpolated
     };
 
     [[nodiscard]] Moment momentAt(double time_s) const;
     [[nodiscard]] std::size_t sceneAfter(std::size_t frame) const;
     [[nodiscard]] bool isBetween(Moment moment) const;
     [[nodiscard]] Step stepTo(const Question& question) const;
-    // Once everything that the moment needs is read.
+    // The question, once everything that the moment needs has been read.
     [[nodiscard]] std::optional<Question> questionFor(Moment moment) const;
     void wantFrom(std::size_t frame);
     void ask(Moment moment);
     // Waits for a step that is being made, and drops it.
     void dropSteps();
-    // Empty if there is.
+    // Why there is no room for a step; empty if there is.
     [[nodiscard]] std::string noRoomFor(const Step& step) const;
     void take(Step&& step);
 
@@ -102,8 +102,8 @@ private:
     double time_s_ = 0.0, told_s_ = 0.0;
     std::optional<std::size_t> late_, wanted_from_;
     std::uint64_t late_count_ = 0;
-    bool is_asked_ = false;                         // and not answered yet
-    bool is_stale_ = false;                         // and the time was set since
+    bool is_asked_ = false;                         // and has not been answered yet
+    bool is_stale_ = false;                         // and the time has been set since
     std::optional<Step> next_;                      // none while is_asked_
     std::optional<Mailbox<Question, Step>> steps_;  // last
 };

@@ -1,4 +1,4 @@
-// The tables of several scenes as one.
+// Joins the tables of several scenes.
 #include "engine/stream/placed_scenes.h"
 
 #include "engine/error.h"
@@ -12,7 +12,7 @@
 namespace binosplat {
 namespace {
 
-// Enough for some seconds of ten scenes in motion: pictures older than these are no longer of use.
+// Enough for some seconds of ten scenes in motion; older pictures are no longer of use.
 constexpr std::size_t kMostChangesRemembered = 4096;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
@@ -42,7 +42,7 @@ gpu::ScenePage placedBox(const Similarity& target_from_source, const gpu::SceneP
             .count = page.count};
 }
 
-// From positions of the scene to those of all.
+// Maps positions of the scene to those of all scenes.
 Similarity allFrom(const PlacedScene& placed, const glm::dvec3& origin) {
     Similarity all = placed.world_from_scene;
     all.position = transform(placed.world_from_scene, placed.origin) - origin;

@@ -1,5 +1,5 @@
-// Several placed scenes on the device as one: their splats stay where they are in memory, and the pages of
-// all are listed together.
+// Several placed scenes as one on the device: their splats stay where they are in memory, and the pages of
+// all scenes are listed together.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -19,8 +19,8 @@ struct PlacedScene {
 
 class PlacedScenes {
 public:
-    // The scenes must outlive it; place() may change where they are. Throws Error unless all are discs, or
-    // all Gaussians of one kind, and the colours of all are encoded alike.
+    // The scenes must outlive this; place() may change where they are. Throws Error unless all are discs, or
+    // all are Gaussians of one kind, and the colours of all are encoded in the same way.
     PlacedScenes(const Context& context, std::span<const PlacedScene> scenes);
     PlacedScenes(const PlacedScenes&) = delete;
     PlacedScenes& operator=(const PlacedScenes&) = delete;
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] const GpuScene& scene() const { return scene_; }
     // The origin of its positions, in the world.
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
-    // True if it is of these scenes, in this order.
+    // True if it consists of these scenes, in this order.
     [[nodiscard]] bool isOf(std::span<const PlacedScene> scenes) const;
     // From the next recordChanges on.
     void place(std::span<const PlacedScene> scenes);

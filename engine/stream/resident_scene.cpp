@@ -30,7 +30,7 @@ public:
             parts_.emplace_back(from, to, bytes);
         }
     }
-    // Beside what was recorded before it, unless it is the `first` one.
+    // In parallel with what was recorded before it, unless it is the `first` one.
     void record(Commands& commands, const Buffer& from, const Buffer& to, bool& first) const {
         if (parts_.empty()) { return; }
         if (!std::exchange(first, false)) { commands.beside(); }
@@ -95,7 +95,7 @@ void ResidentScene::change(std::uint32_t page, const gpu::ScenePage& bounds, flo
     changed_.push_back(page);
 }
 
-// A page that nobody would see is an empty one.
+// A page that has faded out counts as empty.
 void ResidentScene::show(const PartState& part) {
     for (std::size_t i = 0; i < part.pages.size(); ++i) {
         change(part.pages[i], part.fade > 0.0f ? part.bounds[i] : gpu::ScenePage{}, part.fade);

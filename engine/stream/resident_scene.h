@@ -20,10 +20,10 @@ public:
 
     struct Options {
         std::uint32_t capacity_pages = 0;  // of kPageSplats
-        // Limit of the splats that a frame uploads; at least one page.
+        // The most that a frame uploads; at least one page.
         std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;
     };
-    // Takes all of its device memory. Throws Error if there is not that much.
+    // Allocates all of its device memory. Throws Error if there is not that much.
     ResidentScene(const Context& context, const SceneTraits& traits, const Options& options);
     ResidentScene(const ResidentScene&) = delete;
     ResidentScene& operator=(const ResidentScene&) = delete;
@@ -35,19 +35,19 @@ public:
         return static_cast<std::uint32_t>(scene_.table_.bounds.size());
     }
     [[nodiscard]] std::uint32_t freePages() const { return static_cast<std::uint32_t>(free_.size()); }
-    // Of all parts, and of those that frames see.
+    // Splats of all parts, and of those that frames see.
     [[nodiscard]] std::uint32_t splatsAdded() const { return scene_.splats_coming_; }
     [[nodiscard]] std::uint32_t splatsShown() const { return scene_.splats_held_; }
 
-    // The following are for the thread that records frames, between them. A new page takes the lowest free
+    // The following are for the thread that records frames, between frames. A new page takes the lowest free
     // place.
 
-    // What a part that comes or goes marks as changed for earlier pictures: everything around it, or nothing,
-    // if the caller marks it more precisely.
+    // What a part that comes or goes marks as changed since earlier pictures: everything around it, or
+    // nothing, if the caller marks changes more precisely.
     enum class Note { kAll, kNone };
 
-    // Splats that the next frames copy, in the order in which they were added, and that are visible from the
-    // first frame on that has the whole part. Empty if there are not enough free pages: then `pages` is
+    // Adds splats, which the next frames copy in the order in which they were added; they are visible from
+    // the first frame on that has the whole part. Empty if there are not enough free pages: then `pages` is
     // unchanged. `fade`: see setFade.
     std::optional<Part> add(PackedPages&& pages, float fade = 1.0f, Note note = Note::kAll);
     // Invisible from the next frame on; its pages are free at once.
@@ -60,7 +60,7 @@ public:
     [[nodiscard]] bool isInPlace(Part part) const { return parts_[part].pages_to_copy == 0; }
     [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
 
-    // Into a recording, before anything reads the scene; GpuScene::recordChanges. The recording must be
+    // Called for a recording before anything reads the scene (GpuScene::recordChanges). The recording must be
     // submitted, and before the next one.
     void recordChanges(Commands& commands);
 
@@ -87,7 +87,7 @@ private:
     std::uint32_t pages_per_buffer_ = 1;
     GpuScene scene_;  // its buffers hold the pages
     Buffer page_table_;
-    // Of scene_.table_, which is as on the device once these are copied.
+    // Changes of scene_.table_, which matches the device once they are copied.
     std::vector<std::uint32_t> changed_;
     std::vector<bool> is_changed_;
     std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> free_;

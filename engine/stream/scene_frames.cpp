@@ -1,4 +1,4 @@
-// Splats page by page, as bytes.
+// Handles splats page by page, as bytes.
 #include "engine/stream/scene_frames.h"
 
 #include <glm/gtc/packing.hpp>
@@ -77,7 +77,7 @@ PackedPages pageBetween(const PackedPages& one, const PackedPages& other, float 
     const auto put = [&]<typename T>(std::uint64_t offset, const T& value) {
         std::memcpy(bytes.data() + offset, &value, sizeof(T));
     };
-    // Equal values stay as they are, to the bit.
+    // Equal values stay exactly as they are.
     const auto mixFloats = [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t offset = begin; offset < end; offset += sizeof(float)) {
             const auto a = at<float>(from, offset), b = at<float>(to, offset);
@@ -107,7 +107,7 @@ PackedPages pageBetween(const PackedPages& one, const PackedPages& other, float 
     return {one.splatCount(), bounds.page(), std::move(bytes)};
 }
 
-// Boxes around what changed, by where the splats' centres lie.
+// Boxes around what changed, based on where the splats' centres are.
 class BoxGrid {
 public:
     void add(const PageReader& reader, std::size_t i) {
@@ -183,7 +183,7 @@ bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits&
         moved.push_back(glm::distance(centreOf(from, splat), centreOf(to, splat)));
         apart.push_back(glm::distance(centreOf(from, splat), centreOf(from, other)));
     }
-    // All but a few: a splat that turns up elsewhere would be seen flying there.
+    // All but a few: a splat that appears elsewhere would be seen flying there.
     const auto at = [](std::vector<float>& values, double share) {
         const auto place =
             values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

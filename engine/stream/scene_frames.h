@@ -19,22 +19,23 @@ SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits);
 std::uint64_t splatsIn(const SceneFrame& frame);
 std::uint64_t bytesIn(const SceneFrame& frame);
 
-// True if splat i of one is splat i of the other, slightly moved: there are as many, and most are nearer to
-// each other than kNearbyShare of the distance between two splats of one frame.
+// True if splat i of one is splat i of the other, slightly moved: both have the same number, and most pairs
+// are nearer to each other than kNearbyShare of the distance between two splats of the same frame.
 inline constexpr double kNearbyShare = 0.1;
 bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits);
 
 struct FrameStep {
-    std::uint64_t splats = 0;          // of the frame that it leads to
+    std::uint64_t splats = 0;          // in the frame that it leads to
     std::vector<std::uint32_t> pages;  // that differ, or that only one of the two has, in ascending order
     SceneFrame now;                    // these pages, as many of them as the frame has that it leads to
-    // Where the differing splats of these pages were and are: boxes that share no splat, kMostBoxes at most.
+    // Where the differing splats of these pages were and are: at most kMostBoxes boxes, none of which share a
+    // splat.
     std::vector<SceneChange> changes;
 };
 inline constexpr int kBoxesAside = 12;
 inline constexpr std::size_t kMostBoxes = std::size_t{kBoxesAside} * kBoxesAside * kBoxesAside;
-// To a frame or, if `next` corresponds to it, to the interpolation `share` of the way from it to that one:
-// every value linearly, and rotations along the shorter of two ways, with unit length.
+// The step to a frame or, if `next` corresponds to it, to a share of the way from that frame to `next`: every
+// value is interpolated linearly, and rotations along the shorter of two arcs, with unit length.
 FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits,
                       const SceneFrame* next = nullptr, float share = 0.0f);
 

@@ -1,4 +1,4 @@
-// From eyes to requests, and from the loader to the device.
+// Turns what the eyes see into requests, and brings what the loader has read to the device.
 #include "engine/stream/scene_stream.h"
 
 #include "engine/error.h"
@@ -13,7 +13,8 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kPageSplats = gpu::kPageSplats;
-// Splats uploaded in one frame: for a headset, or if the next frame is not urgent, as on a software device.
+// Bytes of splats uploaded in one frame: for a headset, or if the next frame is not urgent, as on a software
+// device.
 constexpr std::uint64_t kBytesAFrame = std::uint64_t{8} << 20, kBytesAPicture = std::uint64_t{128} << 20;
 constexpr std::chrono::milliseconds kLook(50);
 
@@ -78,8 +79,8 @@ SceneStream::SceneStream(const Context& context, std::unique_ptr<ChunkSource> so
     : context_(context), settings_(std::move(settings)) {
     const std::span<const LodLeaf> tree = source->leaves();
     const SceneTraits traits = traitsOf(*source, settings_);
-    // Never more memory than the finest level of all leaves takes or, if a budget is given, than that takes.
-    // A share of the pages is for exchanges, at least enough for the largest part.
+    // Never more memory than the finest level of all leaves needs or, if a budget is given, than the budget
+    // needs. A share of the pages is for exchanges, at least enough for the largest part.
     std::uint64_t most_pages = 0, largest = 1;
     for (const LodLeaf& leaf : tree) {
         std::uint64_t pages = 0;
@@ -136,13 +137,13 @@ std::vector<LeafLevel> SceneStream::missing(const std::vector<LeafLevel>& chosen
 
 void SceneStream::wish(Waits waits, bool coarsest_only) {
     std::vector<LeafLevel> coarsest, finer;
-    // A leaf that shows something already needs no coarse level first.
+    // A leaf that already shows something does not need a coarse level first.
     std::ranges::copy_if(chosen_.coarsest, std::back_inserter(coarsest), [&](LeafLevel at) {
         return leaves_->isEmpty(at.leaf) || chosen_.levels[at.leaf] == at.level;
     });
     if (!coarsest_only) {
         finer = chosen_.finer;
-        // Leaves that are to have fewer splats make space for the others.
+        // Leaves that will have fewer splats make space for the others.
         std::ranges::stable_partition(finer, [&](LeafLevel at) { return leaves_->isTooFine(at.leaf); });
     }
     has_wishes_ = !loader_->want(missing(coarsest), missing(finer), waits);

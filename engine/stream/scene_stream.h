@@ -1,4 +1,4 @@
-// A streamed scene as frames see it: what the eyes need comes while frames go on, within a budget of splats
+// A streamed scene as frames see it: what the eyes need arrives while frames go on, within a budget of splats
 // and of memory.
 #pragma once
 
@@ -13,13 +13,13 @@
 namespace binosplat {
 
 struct StreamSettings {
-    std::uint64_t splat_budget = 0;  // of the shown levels together; 0: as many as fit the memory
+    std::uint64_t splat_budget = 0;  // of the shown levels together; 0: as many as fit into the memory
     // Device memory for splats; 0: half of what the device has or, if less is allowed, two fifths of that.
     std::uint64_t memory_bytes = 0;
     double fade_seconds = 0.2;     // that each half of an exchange takes
     double look_ahead_rad = 0.35;  // see ChoiceSettings
     bool pictures = false;         // frames may take their time
-    // How splats are drawn, see LoadOptions.
+    // How splats are drawn; see LoadOptions.
     std::optional<int> sh_degree = {};
     bool flatten = false, antialiased = false;
     LoaderSettings loader = {};  // but its `finish`
@@ -34,7 +34,7 @@ struct LevelQuestion {
 class SceneStream final : public LiveScene {
 public:
     // Takes the device memory, and begins to load when it is told where the eyes are. Throws Error if there
-    // is not enough memory, or no chunk of the coarsest level can be opened.
+    // is not enough memory, or if none of the coarsest level's chunks can be opened.
     SceneStream(const Context& context, std::unique_ptr<ChunkSource> source, StreamSettings settings);
 
     [[nodiscard]] const std::string& name() const override { return source().name(); }
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] const ChunkSource& source() const { return loader_->source(); }
     // As many splats as the memory holds, or as the whole scene has, if that is less.
     [[nodiscard]] std::uint64_t mostSplats() const;
-    // The most splats that are chosen; from the next choice on.
+    // Sets the most splats that are chosen, from the next choice on.
     void setSplatBudget(std::uint64_t splats);
 
     void update(std::span<const Eye> eyes, double step_seconds) override;
@@ -63,7 +63,7 @@ private:
     // The chosen levels that are not loaded, to be requested.
     [[nodiscard]] std::vector<LeafLevel> missing(const std::vector<LeafLevel>& chosen) const;
     void wish(Waits waits, bool coarsest_only = false);
-    // Adds the parts that found no room before, and those loaded since.
+    // Adds the parts for which there was no room before, and those loaded since.
     void takeLoaded(bool at_once);
     void ask(std::span<const Eye> eyes);
     void settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress);
@@ -76,7 +76,7 @@ private:
     std::unique_ptr<ChunkLoader> loader_;
     std::unique_ptr<ShownLeaves> leaves_;
     LevelChoices chosen_;
-    std::deque<LoadedPart> held_;         // parts that found no room yet
+    std::deque<LoadedPart> held_;         // parts for which there was no room yet
     bool has_wishes_ = false;             // that the loader has not been told
     std::optional<LevelQuestion> asked_;  // the last one
     bool answered_ = false;

@@ -20,7 +20,8 @@ namespace binosplat {
 
 class SeriesLoader {
 public:
-    // A frame of the scene. It stays in place while it is held, on any thread; the loader outlives that.
+    // A frame of the scene. It stays in place while it is held, on any thread; the loader must exist for as
+    // long.
     struct Frame {
         SceneFrame splats;
         mutable std::atomic<int> holders = 0;  // more of them only with the mutex held, fewer at any time
@@ -53,7 +54,7 @@ public:
     [[nodiscard]] bool isSurelyBroken(std::size_t scene) const;
     // Waits until it is loaded. Throws Error if it cannot be.
     [[nodiscard]] Held get(std::size_t scene);
-    // One sentence for each scene that cannot be had, once.
+    // One sentence for each scene that cannot be loaded, once.
     [[nodiscard]] std::vector<std::string> takeLines(Waits waits);
     [[nodiscard]] std::uint64_t bytesKept() const;
 

@@ -1,4 +1,4 @@
-// Parts that come, fade and go.
+// Brings in, fades and removes parts.
 #include "engine/stream/shown_leaves.h"
 
 #include <algorithm>

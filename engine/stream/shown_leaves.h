@@ -16,7 +16,7 @@ namespace binosplat {
 // For the thread that records frames.
 class ShownLeaves {
 public:
-    // `leaves` outlives this.
+    // `leaves` must outlive this.
     ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options,
                 std::span<const LodLeaf> leaves);
 

@@ -1,4 +1,4 @@
-// bin: the tiles in which a splat meets a pixel centre.
+// Twin of bin: finds the tiles in which a splat reaches a pixel centre.
 #include "engine/parallel.h"
 #include "engine/twin/reach.h"
 
@@ -19,8 +19,8 @@ void markRun(const RayPlane& plane, int y, Span run, std::vector<std::uint8_t>& 
     for (int tile = run.begin / kTileSize; tile <= (run.end - 1) / kTileSize; ++tile) { marks[tile] = 1; }
 }
 
-// Appends the pairs of one splat, tiles ascending. `marks` has a zero for each column of tiles, and is left
-// that way.
+// Appends the pairs of one splat, in ascending order of tiles. `marks` has a zero for each column of tiles,
+// and is left that way.
 void binOne(const ProjectedSplat& splat, std::uint32_t rank, glm::uvec2 size_px, double near,
             std::vector<std::uint8_t>& marks, std::vector<TilePair>& pairs) {
     const glm::ivec4 box = splat.box_px;

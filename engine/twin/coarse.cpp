@@ -1,4 +1,4 @@
-// rasterize for coarse tiles.
+// Twin of rasterize for coarse tiles.
 #include "engine/twin/coarse.h"
 
 #include "engine/parallel.h"

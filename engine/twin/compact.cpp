@@ -1,4 +1,5 @@
-// compact: the visible splats without gaps, and the camera z of their centres or their distance.
+// Twin of compact: lists the visible splats without gaps, with the camera z of their centres or their
+// distance.
 #include "engine/parallel.h"
 #include "engine/twin/splat.h"
 

@@ -1,4 +1,4 @@
-// How much each splat contributes to a picture, and in which direction it should change: the twin of
+// How much each splat contributes to a picture, and in which direction it should change; the twin of
 // shaders/splat/contribute.comp.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace binosplat::reference {
 
-// Sums over the pixels of an eye, where w is a splat's blending weight, `missing` what the pixel lacks of the
-// wanted colour, and D the difference between the splat's colour and what shows through behind it.
+// Sums over the pixels of an eye, where w is a splat's blending weight, `missing` the difference of the pixel
+// from the wanted colour, and D the difference between the splat's colour and what shows through behind it.
 struct Contribution {
     double weight = 0.0;                            // w
     glm::dvec3 missing{0.0};                        // w missing

@@ -1,6 +1,6 @@
-// cull: which splats may touch a pixel. A disc with support function h(n) = n.c + r |(n.a, n.b)| lies outside
-// a half-space n.p >= d of the frustum if h(n) < d, where r = sqrt(cut) is how far its opacity lets it reach.
-// A 3D Gaussian has a box on the screen.
+// Twin of cull: finds the splats that may touch a pixel. A disc with support function h(n) = n.c + r |(n.a,
+// n.b)| lies outside a half-space n.p >= d of the frustum if h(n) < d, where r = sqrt(cut) is how far its
+// opacity lets it reach. A 3D Gaussian has a box on the screen.
 #include "engine/parallel.h"
 #include "engine/twin/splat.h"
 

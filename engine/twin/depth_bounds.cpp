@@ -1,4 +1,4 @@
-// depth_bounds: how often each depth occurs in every other row of a picture.
+// Twin of depth_bounds: counts how often each depth occurs, in every other row of a picture.
 #include "engine/twin/stereo.h"
 
 #include <algorithm>

@@ -32,7 +32,7 @@ public:
                 inverse_depth / point.z,
                 point.z > 0.0};
     }
-    // How far a place moves in the target per unit of the source's inverse depth, if both depths are about
+    // How far a place moves in the target per unit of inverse depth in the source, if both depths are about
     // the same.
     [[nodiscard]] glm::dvec2 disparity(const glm::dvec2& place_px) const {
         return {target_.fx * move_.x + (target_.cx - place_px.x) * move_.z,

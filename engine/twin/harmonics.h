@@ -1,4 +1,4 @@
-// The colour that harmonics give in a direction.
+// The colour that spherical harmonics give in a direction.
 #pragma once
 
 #include "engine/scene/sh_basis.h"
@@ -10,11 +10,12 @@
 
 namespace binosplat::reference {
 
-// The device holds coefficients and colours as half floats, which end here; values beyond count as this.
+// The device stores coefficients and colours as half floats, whose range ends here; larger values are clamped
+// to it.
 inline constexpr double kMaxHalf = 65504.0;
 
-// The sum of the bands up to `degree` in the unit direction d; `sh` holds three channels per coefficient. Not
-// finite if one of them is not.
+// The sum of the bands up to `degree` in the unit direction d; `sh` has three channels per coefficient. Not
+// finite if any of them is not.
 inline glm::dvec3 evaluateHarmonics(const float* sh, int degree, const glm::dvec3& d) {
     const std::array<double, 16> basis = shBasis(d);
     const auto limit = [](float value) {

@@ -14,7 +14,7 @@
 
 namespace binosplat::reference {
 
-// What later pictures must know about a tile of the picture from which they are made.
+// What later pictures need to know about a tile of the picture from which they are made.
 struct HistoryTile {
     std::uint64_t cost = 0;  // in pairs, when it was last rendered
     std::uint32_t age = 0;   // frames since it was rendered
@@ -38,14 +38,14 @@ struct History {
     std::vector<std::uint8_t> hidden = {};
 };
 
-// rasterize: a picture that was rendered whole, from its moments of inverse depth. `costs`: pairs of each
+// rasterize: the history that a full render leaves, from its moments of inverse depth. `costs`: pairs of each
 // tile.
 History historyOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs);
 
 // Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0: Lagrange's polynomial through
 // all six, plus (4 t (1 - t))^2 times 0.024 of the fourth and 0.02 of the second differences around sample 0
-// and sample 1, in the shares 1 - t and t. They sum to 1, and no frequency comes out stronger than it went
-// in, at any t, so a picture may be resampled again and again.
+// and sample 1, in the shares 1 - t and t. They add up to 1, and do not amplify any frequency, at any t, so a
+// picture may be resampled again and again.
 std::array<double, 6> sixTapWeights(double t);
 
 // warp_history and warp_pixels: the history as `eye` sees it, and the expected errors of its tiles.

@@ -1,4 +1,4 @@
-// present: pictures as bytes.
+// Twin of present: pictures as bytes.
 #include "engine/twin/present.h"
 
 #include "engine/srgb.h"
@@ -17,7 +17,7 @@ std::uint32_t byteOf(double value, bool linear) {
     return static_cast<std::uint32_t>(std::floor((linear ? lightOf(shown) : shown) * 255.0 + 0.5));
 }
 
-// For a blended, encoded value with this share: the light of the colour itself, multiplied by the share.
+// For a blended, encoded value of a pixel with this alpha: the linear colour itself, multiplied by alpha.
 std::uint32_t seenThrough(double value, double share, bool linear) {
     if (!(value > 0.0) || share == 0.0) { return 0; }
     const double light = share * lightOf(std::min(value / share, 1.0));
@@ -85,7 +85,7 @@ std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<co
         return depth_sums[i] > 0.0 ? rgba[i].a / depth_sums[i] : 0.0;
     };
     const std::ptrdiff_t columns = width, rows = std::ssize(rgba) / columns;
-    // 1/z of the pixels from one on to the end of the picture.
+    // 1/z of the pixels from a given one to the end of the picture.
     const auto profile = [&](std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t dx, std::ptrdiff_t dy) {
         std::vector<double> values;
         for (; x >= 0 && y >= 0 && x < columns && y < rows; x += dx, y += dy) {

@@ -1,4 +1,4 @@
-// price: the worth of rendering a tile's error away, relative to the tile's cost.
+// Twin of price: the worth of removing a tile's error by rendering it, relative to the tile's cost.
 #include "engine/twin/splat.h"
 #include "engine/twin/stereo.h"
 
@@ -22,7 +22,7 @@ std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds,
         if (kinds[t] != TileKind::kNone || !(steps > 0.0)) { continue; }
         const double share = seen_shares.empty() ? 1.0 : seen_shares[t];
         if (share < 1.0 && share * steps < kLeastSeen * 0x1p20) { continue; }
-        // Bins of an octave are equally wide.
+        // The bins of an octave are equally wide.
         int octave = 0;
         const double within = 2.0 * std::frexp(share * steps / static_cast<double>(costs[t]), &octave) - 1.0;
         const double bin = kBinsPerOctave * (octave - 1 - kFirstOctave) + std::floor(kBinsPerOctave * within);

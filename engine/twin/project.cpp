@@ -1,4 +1,4 @@
-// project: a splat as one eye sees it: pixel rows, their reduced form, colour and box.
+// Twin of project: a splat as one eye sees it: pixel rows, their reduced form, colour and box.
 #include "engine/parallel.h"
 #include "engine/twin/harmonics.h"
 #include "engine/twin/reach.h"
@@ -6,7 +6,7 @@
 namespace binosplat::reference {
 namespace {
 
-// 0.5 + SH(d); d is zero if the splat is at the eye itself, and only the constant is left.
+// 0.5 + SH(d); if the splat is at the eye itself, d is zero, and only the constant is left.
 glm::dvec3 shade(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
     const glm::dvec3 from_eye = glm::dvec3(scene.positions[splat]) - eye.position_world;
     const double distance = glm::length(from_eye);
@@ -43,7 +43,7 @@ void reduce(ProjectedSplat& splat, const CameraSplat& camera, const Intrinsics& 
     }
 }
 
-// The ellipse of a 3D Gaussian, and its opacity after dimming. False if it is visible nowhere.
+// The ellipse of a 3D Gaussian, and its opacity after dimming. False if it is not visible anywhere.
 bool placeGaussian(ProjectedSplat& splat, const CameraSplat& camera, const EyeFrame& eye, bool dimmed) {
     const ScreenGaussian g = screenGaussian(camera, eye);
     if (dimmed) {

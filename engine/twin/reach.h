@@ -17,8 +17,8 @@ struct Span {
 };
 
 // The pixels of row `y` in [x0, x1) that the splat can reach, as at most two runs that do not overlap (the
-// disc and the low-pass are convex, but their union need not be): all of them, and at most a rounding error
-// more, so `meet` has the last word.
+// disc and the low-pass are convex, but their union need not be). Rounding may add a pixel, so `meet` has the
+// last word.
 std::array<Span, 2> runsOfReach(const RayPlane& plane, int y, int x0, int x1);
 
 }  // namespace binosplat::reference

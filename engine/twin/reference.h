@@ -43,7 +43,7 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // projected centre and plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2)
 // and there is no low-pass. For a 3D Gaussian (`gaussian`) these are u and v themselves in place of u/z and
 // v/z, 1/z is where it is greatest along the ray, to first order and within kDepthReach of the centre's, and
-// there is no low-pass but that in plane_from_pixel. A splat that can show nowhere (opacity at or below
+// there is no low-pass but that in plane_from_pixel. A splat that cannot show anywhere (opacity at or below
 // 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
@@ -131,7 +131,7 @@ std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uin
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px,
                           const Settings& settings);
 
-// Also bin: removes the pairs in hidden tiles. `hidden` has a byte a tile, 1 for these; empty: none.
+// Also bin: removes the pairs in hidden tiles. `hidden` has a byte per tile, 1 for these; empty: none.
 void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
 
 // sort_tiles: pairs by tile, in depth order within each; and where each tile's pairs are.

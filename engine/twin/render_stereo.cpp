@@ -1,4 +1,4 @@
-// One eye in full and the other from it: all stereo passes, in frame order.
+// Renders one eye in full and makes the other from it: all stereo passes, in frame order.
 #include "engine/twin/eye_change.h"
 #include "engine/twin/splat.h"
 #include "engine/twin/stereo.h"

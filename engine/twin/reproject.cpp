@@ -1,4 +1,4 @@
-// reproject: each pixel of the source goes to where the target sees it; the nearest stays.
+// Twin of reproject: each pixel of the source goes to where the target sees it; the nearest one wins.
 #include "engine/twin/eye_change.h"
 #include "engine/twin/splat.h"
 
@@ -30,8 +30,8 @@ struct Moved : EyeChange::Moved {
 };
 glm::ivec2 pixelOf(const glm::dvec2& place_px) { return glm::ivec2(glm::floor(place_px)); }
 
-// The pixels of a row whose centres lie between two pixels that separated by at most gap_px, and that neither
-// covers.
+// The pixels of a row whose centres lie between two pixels that have separated by at most gap_px, and that
+// neither of the two covers.
 void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int row, int gap_px) {
     const double reach = right.place_px.x - here.place_px.x;
     if (!(reach > 1.0 && reach <= gap_px + 1.0)) { return; }
@@ -42,7 +42,7 @@ void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int r
     }
 }
 
-// The pixels whose centres lie in the parallelogram of three neighbours that did not separate far and kept
+// The pixels whose centres lie in the parallelogram of three neighbours that did not separate much and kept
 // their orientation.
 void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const Moved& below, int gap_px) {
     const glm::dmat2 sides(right.place_px - here.place_px, below.place_px - here.place_px);
@@ -84,7 +84,8 @@ double frontBeside(const Picture& dominant, int x, int y, const StereoSettings& 
     return nearest;
 }
 
-// Around a sampled pixel: the cubic kernel reads two pixels to each side, and its place is up to one off.
+// Margin around a sampled pixel: the cubic kernel reads two pixels to each side, and its place is wrong by up
+// to one.
 constexpr int kHiddenMarginPx = 3;
 
 // True if everything around a pixel of the source was rendered.

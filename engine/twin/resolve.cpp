@@ -1,4 +1,4 @@
-// resample: a place in the source's picture for every pixel of the target.
+// Twin of resample: finds a place in the source's picture for every pixel of the target.
 #include "engine/twin/eye_change.h"
 #include "engine/twin/splat.h"
 
@@ -14,7 +14,8 @@ Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int rig
     const int run = right - left - 1;
     const PixelClass pixel_class = inside && run <= settings.gap_px ? PixelClass::kGap : PixelClass::kHole;
     const auto depthAt = [&](int column) { return row[static_cast<std::size_t>(column)].inverse_depth; };
-    // A slanted surface: neighbours separate by no more than the run is long. The paper always interpolates.
+    // A slanted surface: neighbours separate by no more than the length of the run. The paper always
+    // interpolates.
     const bool slants = pixel_class == PixelClass::kGap &&
                         std::abs(depthAt(right) - depthAt(left)) * disparity_px <= run + 1.0;
     if (slants || (settings.forward && inside)) {
@@ -22,8 +23,8 @@ Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int rig
         return {pixel_class, static_cast<std::uint32_t>(x),
                 (1.0 - share) * depthAt(left) + share * depthAt(right), 0};
     }
-    // Uncovered content is behind: the farther neighbour is repeated, or the left one of equals, such as the
-    // two sides of a wall.
+    // Uncovered content is behind, so the farther neighbour is repeated, or the left one if both are equal,
+    // such as the two sides of a wall.
     if (left < 0 && right < 0) { return {pixel_class, static_cast<std::uint32_t>(x), 0.0, 0}; }
     const bool is_left =
         right < 0 || (left >= 0 && roundedDepth(depthAt(left)) <= roundedDepth(depthAt(right)));

@@ -1,4 +1,4 @@
-// select: the tiles whose errors cost least to render away.
+// Twin of select: chooses the tiles whose errors cost least to remove.
 #include "engine/twin/history.h"
 
 #include <functional>
@@ -39,7 +39,7 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
     for (std::size_t tile = 0; tile < prices.size(); ++tile) {
         if (!prices[tile] || (last && *prices[tile] < *last)) { continue; }
         if (last && *prices[tile] == *last) {
-            if (*whole[tile] != *last) { continue; }  // it would have been chosen before
+            if (*whole[tile] != *last) { continue; }  // it would have been chosen already
             goes_on = goes_on && costs[tile] <= left;
             if (!goes_on) { continue; }
             left -= costs[tile];

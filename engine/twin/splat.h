@@ -20,8 +20,8 @@ inline constexpr double kLowPassFactor = 2.0;
 inline constexpr double kScreenVariance = 0.3;
 // A 3D Gaussian's depth at a pixel stays within this ratio of its centre's.
 inline constexpr double kDepthReach = 2.0;
-// Below this sine between the line of sight and the plane, the plane holds the eye as far as float64 can
-// tell.
+// Below this sine of the angle between the line of sight and the plane, the eye is in the plane as far as
+// float64 can tell.
 inline constexpr double kMinPlaneSine = 1e-14;
 
 inline bool isFinite(const glm::dvec3& v) {
@@ -82,21 +82,21 @@ inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& e
     g.xy = a.x * a.y + b.x * b.y + w.x * w.y;
     g.yy = sharp_yy + variance;
     g.with_depth = -(splat.a.z * a + splat.b.z * b + splat.w.z * w) / (splat.c.z * splat.c.z);
-    // xx yy - xy^2 as a sum of squares (Cauchy and Binet): for a needle the difference would not keep a
-    // digit.
+    // xx yy - xy^2 as a sum of squares (Cauchy and Binet): for a needle the difference would lose all digits.
     const double ab = cross(a, b), aw = cross(a, w), bw = cross(b, w);
     g.sharp_det = ab * ab + aw * aw + bw * bw;
     g.det = g.sharp_det + variance * (sharp_xx + sharp_yy) + variance * variance;
     return g;
 }
 
-// Empty for a splat that is visible nowhere: opacity at or below 1/255, or an attribute that is not finite.
+// Empty for a splat that is not visible anywhere: its opacity is at most 1/255, or an attribute is not
+// finite.
 inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
     const double cut = 2.0 * std::log(255.0 * static_cast<double>(scene.opacities[splat]));
     if (!(cut > 0.0) || !std::isfinite(cut)) { return std::nullopt; }
     const glm::dvec3 from_eye = glm::dvec3(scene.positions[splat]) - eye.position_world;
     const glm::quat& stored = scene.rotations[splat];
-    // A quaternion of length zero becomes NaN here, and the splat invisible.
+    // A quaternion of length zero becomes NaN here, and makes the splat invisible.
     const glm::dmat3 disc = glm::mat3_cast(
         glm::dquat(stored.w, stored.x, stored.y, stored.z) /
         std::sqrt(static_cast<double>(stored.w) * stored.w + static_cast<double>(stored.x) * stored.x +
@@ -120,8 +120,8 @@ struct PixelRows {
     glm::dvec2 origin_px;
 };
 
-// About the projected centre, where digits are kept best, unless it is absent or so far out that the pixels
-// themselves would lose digits; then about the middle of the image.
+// About the projected centre, where precision is best, unless there is none or it is so far out that the
+// pixels themselves would lose digits; then about the middle of the image.
 inline PixelRows pixelRows(const ProjectedSplat& splat, glm::uvec2 size_px) {
     const glm::dvec2 size(size_px), middle = 0.5 * size;
     const glm::dvec2 away = glm::abs(splat.reference_px - middle);
@@ -185,8 +185,8 @@ struct Hit {
     double rho, depth;
 };
 
-// False if the ray misses. A hit of the disc that is nearer than near (or behind the eye, or not finite) does
-// not count, which leaves the low-pass if there is one. Every comparison is written to fail for NaN.
+// False if the ray misses. A hit of the disc that is nearer than `near` (or behind the eye, or not finite)
+// does not count, which leaves the low-pass, if any. Every comparison is written to fail for NaN.
 inline bool meet(const RayPlane& plane, const glm::dvec2& pixel, Hit& hit) {
     bool met = false;
     hit = {plane.cut, 0.0};

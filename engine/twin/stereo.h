@@ -35,7 +35,7 @@ struct StereoSettings {
     double budget = 0.2;          // share of an eye's work that is spent on tiles with an error
     std::uint32_t move_cost = 0;  // of reprojecting a tile, in pairs; tiles with no more pairs are rendered
     double hole_error = 1.0, newcomer_error = 0.3;
-    // Tiles that are never seen: a byte a tile, 1 for these; empty: none. The source has no picture there.
+    // Tiles that are never seen: a byte per tile, 1 for these; empty: none. The source has no picture there.
     std::vector<std::uint8_t> source_hidden = {}, target_hidden = {};
     std::optional<Gaze> target_gaze = {};
 };
@@ -86,7 +86,7 @@ void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const S
 std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
 
 // edge_rois: the inverse depths without one pixel in 200 at either end; the widths of the borders that the
-// source does not see; and the tiles that meet these borders.
+// source does not see; and the tiles that touch these borders.
 struct InverseDepthBounds {
     double far, near;
 };

@@ -1,4 +1,4 @@
-// warp_pixels: pixels of an eye's picture that are searched for in the history one by one.
+// Twin of warp_pixels: searches the history for pixels of an eye's picture, one by one.
 #include "engine/twin/history_view.h"
 
 namespace binosplat::reference {
@@ -14,7 +14,7 @@ struct Found {
     bool agrees = false;
 };
 
-// How wide a pixel of the history is at a place: wider than a pixel if the view has turned towards it.
+// How wide a pixel of the history is at a place: more than one pixel if the view has turned towards it.
 glm::dvec2 widthOfPixel(const HistoryView& view, const glm::dvec2& wanted_px) {
     const auto changeAlong = [&](const glm::dvec2& half) {
         return view.place(wanted_px + half, 0.0).place_px - view.place(wanted_px - half, 0.0).place_px;
@@ -122,7 +122,7 @@ PixelFromHistory makePixel(const HistoryView& view, const glm::dvec2& wanted_px,
     glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
     const bool nothing = !found.seen.pixel || !view.isInside(found.place_px);
     const double unseen = found.agrees ? 0.0 : nothing ? kUnseenError : kUncoveredError;
-    // Beside hidden pixels a pixel is taken as it is.
+    // Next to hidden pixels, a pixel is copied as it is.
     const glm::dvec2 middle_px = glm::floor(found.place_px) + 0.5;
     if (view.reachesHidden(glm::ivec2(middle_px), glm::ivec2(middle_px))) {
         off_px = glm::abs(off_px) + glm::abs(found.place_px - middle_px);

@@ -1,5 +1,5 @@
-// weigh: the tiles that the source does not see, those that are never seen, and those that cost less to
-// render than to reproject.
+// Twin of weigh: finds the tiles that the source does not see, those that are never seen, and those that cost
+// less to render than to reproject.
 #include "engine/twin/eye_change.h"
 #include "engine/twin/splat.h"
 
@@ -8,19 +8,19 @@
 namespace binosplat::reference {
 namespace {
 
-// A tile costs this many pairs besides its own, and counts for at most what its word can hold.
+// A tile costs this many pairs in addition to its own; its cost is capped at what its word can hold.
 constexpr std::uint64_t kTilePairs = 16, kMaxTileCost = (1u << 21) - 1;
 // Reprojecting has a cost even if no tile is reprojected: that of reprojecting all tiles, divided by this.
 constexpr std::uint64_t kMoveSharedPart = 2;
 
-// The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
+// The pixel in the middle of a tile, in an even row, since odd rows may lack depths.
 glm::uvec2 middleOf(std::size_t tile, glm::uvec2 size_px) {
     const std::uint32_t columns = tileGrid(size_px).x;
     const glm::uvec2 at(tile % columns, tile / columns);
     return glm::min(at * unsigned{kTileSize} + unsigned{kTileSize / 2}, size_px - 1u) & glm::uvec2(~0u, ~1u);
 }
 
-// The source tile from which the middle of a target tile comes, if it is as deep as what the source has
+// The source tile from which the middle of a target tile comes, if it has the depth that the source has
 // there.
 std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, std::size_t tile,
                        const StereoSettings& settings) {

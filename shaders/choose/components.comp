@@ -1,4 +1,4 @@
-// components: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2).
+// components: turns connected holes inside the picture into boxes of tiles (paper, section 3.5, step 2).
 // Union-find with links towards the smaller index (Jaiganesh and Burtscher 2018): whatever the order of the
 // threads, a component's root is its first pixel.
 #version 460
@@ -21,7 +21,7 @@ bool isHole(WarpView warp, uvec2 at) {
             3) == kHole;
 }
 
-// Other threads change parents meanwhile; every value that can be read leads to the same root.
+// Other threads change parents at the same time; every value that can be read leads to the same root.
 uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[slotOf(pixel)].parent, 0); }
 
 // On the way up, each pixel is linked to its grandparent; otherwise chains would be as long as a hole is wide
@@ -49,11 +49,11 @@ void unite(uint a, uint b) {
     }
 }
 
-// If there are more components than boxes, none gets one, since the first ones depend on the order of the
-// threads.
+// If there are more components than boxes, none gets one, since which ones come first depends on the order of
+// the threads.
 bool haveBoxes() { return pass.counters.at[0].components <= pass.box_capacity; }
 
-// Marks the tiles that [low, high) meets, grown by the margin.
+// Marks the tiles that [low, high), grown by the margin, touches.
 void markTiles(WarpView warp, uvec2 low, uvec2 high, uint first, uint stride) {
     const uvec2 begin = uvec2(max(ivec2(low) - int(warp.margin_px), ivec2(0))) / kTileSize;
     const uvec2 end = min((high + warp.margin_px + kTileSize - 1) / kTileSize, warp.size_tiles);
@@ -83,7 +83,7 @@ void main() {
     const uint pixel = at.y * warp.size_px.x + at.x;
     if (!isHole(warp, at)) { return; }
     if (kStep == kStepUnite) {
-        // The four neighbours that come before this pixel; the others find it.
+        // The four neighbours that come before this pixel; the others will find it.
         for (uint n = 0; n < 4; ++n) {
             const ivec2 other = ivec2(at) + (n == 0 ? ivec2(-1, 0) : ivec2(int(n) - 2, -1));
             if (other.x < 0 || other.y < 0 || other.x >= int(warp.size_px.x)) { continue; }
@@ -104,7 +104,7 @@ void main() {
             atomicMin(pass.boxes.at[component].y0, at.y);
             atomicMax(pass.boxes.at[component].x1, at.x + 1);
             atomicMax(pass.boxes.at[component].y1, at.y + 1);
-        } else {  // this pixel stands for itself
+        } else {  // this pixel is its own root
             markTiles(warp, at, at + 1, 0, 1);
         }
     }

@@ -1,6 +1,6 @@
-// mark_changed: where parts of the scene came, went or faded, an eye's history is wrong by more than its
-// warp. The quarters of tiles in which they are seen get an error, so that price finds them worth rendering.
-// A thread per tile.
+// mark_changed: where parts of the scene came, went or faded, an eye's history has a larger error than that
+// of its warp. The quarters of tiles in which they are seen get an error, so that price finds them worth
+// rendering. A thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

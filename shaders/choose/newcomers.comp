@@ -1,6 +1,6 @@
 // newcomers: splats that the target sees and the source does not. They stand in front of what was reprojected
 // and leave no hole, so the picture does not reveal them; here each adds its expected error to the tiles it
-// meets.
+// touches.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -23,8 +23,8 @@ layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
 shared uint unseen_count;
-// A splat that meets more tiles than this would keep one thread busy for long: it stays in the list, and all
-// others leave it.
+// A splat that touches more tiles than this would keep one thread busy for long: it stays in the list, and
+// all others leave it.
 const uint kLargeTiles = 64;
 const uint kDone = 0xffffffffu;
 shared uint large_count;
@@ -52,7 +52,7 @@ void addError(uint tile, uint steps) {
     } while (seen != before);
 }
 
-// Adds the splat's error to the tiles it meets: by one thread or, for a large splat, by all threads
+// Adds the splat's error to the tiles it touches: by one thread or, for a large splat, by all threads
 // `together`, which share its rows.
 // False if it is large, so that one thread alone must leave it.
 bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {

@@ -1,7 +1,7 @@
-// price: the price of each tile, which is its expected error per pair, and how much there is to render at
-// each price. A thread per tile. Where the gaze is known, only the part of an error that the eye sees counts,
-// and tiles in which it cannot tell two rows apart are marked. The last workgroup finds the price at which
-// the budget ends, for the first target and for all.
+// price: computes the price of each tile, which is its expected error per pair, and how much there is to
+// render at each price. A thread per tile. Where the gaze is known, only the part of an error that the eye
+// sees counts, and tiles in which it cannot tell two rows apart are marked. The last workgroup finds the
+// price at which the budget ends, for the first target and for all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -19,9 +19,9 @@ layout(constant_id = 1) const
 #include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
-// Contrast masks errors. A tile whose colours change by this much from pixel to pixel (root of the mean
-// square) may be off by the bound. A tile with less contrast may be off by proportionally less, but at least
-// by this part of the bound (4.4 dB): there, an error at an edge is visible even if only one eye has it.
+// Contrast masks errors. A tile whose colours change by this much from pixel to pixel (root mean square) may
+// have an error up to the bound. A tile with less contrast may have proportionally less, but at least this
+// part of the bound (4.4 dB): there, an error at an edge is visible even if only one eye has it.
 const float kMaskingGradient = 0.05, kUnmaskedBound = 0.6;
 
 // 16 bins per octave, the greatest quotients last: exponent and four bits of the mantissa.
@@ -30,15 +30,14 @@ uint binOf(float error_per_pair) {
 }
 
 // What rendering a tile is worth in a picture that is made from a history: its expected squared error, times
-// the frames that it has waited. Mending an error that grows with each frame saves the area under its growth
-// (a Whittle index), and so every tile gets its turn.
+// the frames that it has waited. Removing an error that grows with each frame saves the area under its growth
+// (a Whittle index), so every tile gets its turn.
 uint errorOfHistory(HistoryTile tile) {
     const float squares = 3 * float(kCellSize * kCellSize) * dot(tile.errors, tile.errors);
     return squares > 0 ? max(uint(min(squares * float(max(tile.age, 1)), 2000) * kErrorSteps), 1) : 0;
 }
 
-// Adds the error that this frame's warp is expected to cause. Blur of what is already blurred adds up by
-// amplitude.
+// Adds the error that this frame's warp is expected to cause. Repeated blur adds up by amplitude.
 HistoryTile withGrowth(HistoryTile tile) {
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         // The amplitude per pixel and channel.
@@ -59,15 +58,15 @@ HistoryTile withLoss(HistoryTile tile, uvec2 at) {
     return tile;
 }
 
-// The amplitude by which a tile may be off. Contrast masks errors: with less of it, a tile may be off by
-// less.
+// The amplitude of the error that a tile may have. Contrast masks errors: with less contrast, the error must
+// be smaller.
 float boundOf(HistoryTile tile) {
     const float gradient = sqrt(float(tile.squared_gradient) / (kErrorSteps * 3 * kTileSize * kTileSize));
     return FIRST.warp.error_bound * clamp(gradient / kMaskingGradient, kUnmaskedBound, 1);
 }
 
-// The bin of a tile under a bound, two bins in one: tiles above the bound come before the others, and those
-// that nobody saw before come first.
+// The bin of a tile under a bound, with two bins in one: tiles above the bound come before the others, and
+// those that have never been seen come first.
 uint binUnderBound(uint bin, HistoryTile tile, float share) {
     uint unseen = 0;
     [[unroll]] for (uint q = 0; q < 4; ++q) { unseen += unseenIn(tile.unseen, q); }
@@ -103,7 +102,7 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     const bool unnoticed = kFoveated && share < 1 && seen < kLeastSeenError * kErrorSteps;
     const uint bin = binOf(worth / float(cost));
     uint seen_bin = binOf(share * worth / float(cost));
-    // The list counts errors as if they were seen whole, so that the required worth of a pair does not fall
+    // The list counts errors as if they were fully seen, so that the required worth of a pair does not fall
     // with what is not seen. A history is different: errors that are neither seen nor rendered grow from
     // frame to frame, and would leave nothing to those that are seen.
     if (kHistory && FIRST.warp.error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
@@ -112,7 +111,7 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     return unnoticed ? 0 : seen_bin << 22 | (seen_bin < listed_bin ? kSeenInPart : 0) | cost;
 }
 
-// Greatest bins first: each thread holds kBinsPerThread of them.
+// Greatest bins first: each thread has kBinsPerThread of them.
 void findLastBin(float share, uint picture_cost) {
     const uint first = kPriceBins - 1 - threadIndex() * kBinsPerThread;
     uint costs[kBinsPerThread];

@@ -1,18 +1,18 @@
-// The blocks of kCullBlock splats that cull and compact process, a workgroup each: all of a scene's, or with
-// kInPages its visible pages (see cull_pages). Needs `pass` to be a CullPass or a CompactPass, and
+// The blocks of kCullBlock splats that cull and compact process, one per workgroup: all of a scene's blocks
+// or, with kInPages, its visible pages (see cull_pages). Needs `pass` to be a CullPass or a CompactPass, and
 // lib/list.glsl.
 
 uint blockCount() {
     return kInPages ? pass.visible_pages.at[0].count : groupsOver(pass.splat_count, kCullBlock);
 }
 
-// The page of a block in the list. If there are many pages, each run is listed where all of its pages would
-// be, followed by the numbers of visible pages before each run (cull_pages).
+// The page of a block in the list. If there are many pages, each run is listed at the place that it would
+// have if all pages were visible; then follow the numbers of visible pages before each run (cull_pages).
 uint pageOfBlock(uint block) {
     const uint pages = groupsOver(pass.splat_count, kPageSplats), groups = groupsOver(pages, kGroupSize);
     const uint length = sumRunLength(groups, kMostPageGroupsInOneRun);
     if (length >= groups) { return pass.page_list.at[block]; }
-    uint first = 0, before = 0;  // of the block's run, the last one that begins no later
+    uint first = 0, before = 0;  // of the block's run: the last one that does not begin after it
     for (uint run = 1; run < groupsOver(groups, length); ++run) {
         const uint begin = pass.page_list.at[pages + run];
         if (begin <= block) {

@@ -1,6 +1,6 @@
-// For shaders that blend by cells: after lib/outline.glsl.
+// For shaders that blend by cells; include this after lib/outline.glsl.
 
-// The cells of the tile that the splat meets, one bit each.
+// The cells of the tile that the splat touches, one bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
     const Outline outline = outlineOfProjected(splat, low_pass);
     if (!outline.ellipse) { return 15; }

@@ -1,6 +1,6 @@
 // A coarse tile: 8x8 samples, evenly spaced from the middle of the first pixel to that of the last, and the
 // 16x16 pixels that Catmull and Rom's cubic makes of them. For rasterize, where each cell of a workgroup has
-// such a tile: once its splats are blended, their shared memory holds the samples.
+// such a tile: once its splats are blended, the samples take over their shared memory.
 
 shared uint cell_details[kCellsPerTile];  // second differences, squared and summed, in kErrorSteps
 shared uint sharp_cells;                  // cells whose tile needs all of its pixels, one bit each
@@ -38,8 +38,8 @@ uint sampleWord(uint cell, ivec2 at) {
     return cell < 2 ? words.x : words.y;
 }
 
-// Its squared second differences along both axes. There are none across the tile's border, so six of eight
-// samples stand for all.
+// Its squared second differences along both axes. There are none across the tile's border, so six out of
+// eight samples stand for all.
 float detailAt(uint cell, ivec2 at) {
     const vec3 here = sampleAt(cell, at).rgb;
     float squares = 0;
@@ -107,7 +107,7 @@ Column beginColumn(uint cell, int x, bool is_lower) {
     return column;
 }
 
-// Its pixel `p`, after those before it.
+// The column's pixel `p`; must be called in order.
 vec4 fillPixel(inout Column column, int p) {
     int first;
     const vec4 down = cubicAt(p, first);

@@ -16,10 +16,11 @@ struct Copied {
 
 // The paper to the letter. Section 3.1, stage 2: the initial view is the source pixels where they were
 // projected; each keeps its colour. Stage 4: gaps, "small and surrounded by valid reprojected pixels", are
-// "filled through adaptive interpolation". It does not say how small, or what adapts: here they are runs of a
-// row up to gap_px, with colours linear between the run's two ends, whichever is farther. Longer runs are not
-// filled in any other way in the paper either if centre ROIs are off (figure 3 a), and get the same; at the
-// picture's border there is only one end. A row that nothing reached shows what is infinitely far.
+// "filled through adaptive interpolation". It does not say how small, or what adapts: here they are runs of
+// up to gap_px in a row, with colours interpolated linearly between the run's two ends, whichever is farther.
+// Longer runs are not filled in any other way in the paper either if centre ROIs are off (figure 3 a), and
+// get the same; at the picture's border there is only one end. A row that nothing reached shows what is
+// infinitely far away.
 Copied copyArrived(WarpView warp, uint row, uvec2 at) {
     const bool here = arrivalAt(row, at.x) != 0;
     const int left = here ? int(at.x) : arrivedBefore(at.x),

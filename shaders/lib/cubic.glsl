@@ -7,7 +7,7 @@ vec4 cubicWeights(float t) {
 }
 
 // A colour; how the picture changes from pixel to pixel along the disparity, at the pixel that contains the
-// place; and the squared loss from sampling between pixels.
+// place; and the squared loss caused by sampling between pixels.
 struct Sample {
     vec4 colour;
     vec3 gradient;

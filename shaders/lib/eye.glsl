@@ -1,4 +1,4 @@
-// The eye for which a workgroup works, loaded into shared memory once so that not every thread fetches its
+// The eye that a workgroup works on, loaded into shared memory once, so that not every thread fetches its
 // forty words.
 
 shared EyeView group_eye;

@@ -12,7 +12,7 @@ float finestCycle(EyeGaze gaze, float angle) {
 }
 
 // The finest cycle that an eye resolves grows linearly with the angle from its gaze (Guenter et al. 2012). A
-// picture has cycles of two pixels and longer; the eye sees the share of these that are no finer than what it
+// picture has cycles of two pixels and longer; the eye sees the share of them that is not finer than what it
 // resolves, along both axes.
 float seenShare(EyeGaze gaze, uvec2 tile) {
     const float share = min(gaze.pixel_cycle / finestCycle(gaze, angleFromGaze(gaze, middleOfTile(tile))), 1);

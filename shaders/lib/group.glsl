@@ -1,5 +1,5 @@
-// Workgroups: which one this is, which thread, and prefix sums across one. Assumes no subgroup width, but
-// that no subgroup of a workgroup has idle lanes: kernels request that where a device allows it
+// Workgroups: which workgroup and thread this is, and prefix sums across a workgroup. Assumes no subgroup
+// width, but that no subgroup of a workgroup has idle lanes: kernels request that where a device allows it
 // (Context::fullSubgroups).
 //
 // After a branch that only some lanes took, lanes must be together again before they exchange values. Vulkan

@@ -20,8 +20,8 @@ uint movingPixel(float inverse_depth, uint landed, uint spread) {
 }
 float inverseDepthOf(uint moving) { return uintBitsToFloat(((moving >> 6) - 1) << 5); }
 
-// A pixel is moved back from the middle of the pixel in which it arrived, and so comes out as far off as it
-// had landed from that middle: by less than a pixel. Only one of the pixels around that place has its parity.
+// A pixel is moved back from the middle of the pixel in which it arrived, so it is misplaced by its distance
+// from that middle, which is less than a pixel. Only one of the pixels around that place has its parity.
 uint parityOf(uvec2 pixel) { return (pixel.x & 1) | (pixel.y & 1) << 1; }
 ivec2 pixelOfParity(vec2 place_px, uint moving) {
     const vec2 parity = vec2(moving & 1, moving >> 1 & 1);

@@ -88,12 +88,12 @@ ivec2 unitsBetween(vec2 bounds_px, uint size, uint count) {
     if (!(first_pixel <= last_pixel)) { return ivec2(0, 0); }
     precise const vec2 units = vec2(floor(first_pixel / float(size)), floor(last_pixel / float(size)) + 1);
     const vec2 clipped = clamp(units, vec2(0), vec2(count));
-    // Also for NaN, of which the clamp above may make anything.
+    // Also for NaN, which the clamp above may turn into anything.
     return clamp(ivec2(clipped), ivec2(0), ivec2(count));
 }
 
-// The tiles of a row that a splat meets, within its box of tiles; all of the box's for a disc that reaches
-// the eye's plane.
+// The tiles of a row that a splat touches, within its box of tiles; for a disc that reaches the eye's plane,
+// all tiles of the box.
 ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
     if (!o.ellipse) { return tile_box.xz; }
     const float first_row = float(row * kTileSize) + 0.5;

@@ -24,7 +24,7 @@ bool isNearHidden(WarpView warp, uvec2 pixel) {
            isHiddenAt(warp, pass.shown_mask, vec2(high.x, low.y));
 }
 
-// A pixel of the source as the target sees it. A pixel that blends two depths moves with what is in front:
+// A pixel of the source as the target sees it. A pixel that blends two depths moves with the one in front:
 // with the nearest of itself and its neighbours in the row. The rows above and below may not exist, or may
 // already be colours of the target.
 Moved moveSource(WarpView warp, uvec2 pixel) {

@@ -29,8 +29,8 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
     t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
 }
 
-// Where a splat of the scene is. A chunk's addresses are read one by one: some compilers do not survive a
-// copy of all of them.
+// Where a splat of the scene is. A chunk's addresses are read one by one, since some compilers crash if all
+// of them are copied.
 struct SplatPlace {
     uint chunk, in_chunk;
 };
@@ -90,8 +90,8 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     return splat;
 }
 
-// From one place in the world, in two floats, to another. Both may be close together and far from the origin:
-// in this order, the first difference is exact if it is small compared with its terms.
+// The vector from one place in the world, given in two floats, to another. Both may be close together and far
+// from the origin: in this order, the first difference is exact if it is small compared with its terms.
 vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
     precise const vec3 difference = (position - from) - from_low;
     return difference;
@@ -122,8 +122,8 @@ bool hasReference(ProjectedSplat splat) { return (floatBitsToUint(splat.opacity)
 float negativeLog2Opacity(ProjectedSplat splat) { return abs(splat.opacity); }
 
 // The remainder of reference_px that single precision drops, x and y in eight bits each, in units of half its
-// last place. Without it the edge of a splat of a few pixels would be off by 1e-4 of its alpha in a picture
-// of 768 pixels, and that of a disc seen edge-on by far more.
+// last place. Without it, the edge of a splat of a few pixels would be wrong by 1e-4 of its alpha in a
+// picture of 768 pixels, and that of a disc seen edge-on by far more.
 vec2 halfLastPlace(vec2 value) {
     return uintBitsToFloat(floatBitsToUint(value) & 0x7f800000u) * 5.9604645e-8;
 }

@@ -1,4 +1,4 @@
-// Light and display-encoded values, of 0 and more (IEC 61966-2-1).
+// Conversions between light and display-encoded values, from 0 up (IEC 61966-2-1).
 
 vec3 decode(vec3 encoded) {
     return mix(pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92,

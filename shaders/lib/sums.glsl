@@ -52,9 +52,9 @@ void sumUpAtOnce(CoherentUints sums, uint count, ListStates result, uint capacit
     if (gl_LocalInvocationIndex == 0) { result.at[0] = makeList(total, capacity); }
 }
 
-// The same in as many steps as `count` requires. Every workgroup calls it once, when its count is written;
-// `group` is its place among `count`, or beyond if it has none. What is left before each count, and in
-// kSumRuns words after them all, is for sumBefore.
+// The same in as many steps as `count` requires. Every workgroup calls it once, when its count has been
+// written; `group` is its place among `count`, or beyond if it has none. The sums in place of the counts, and
+// in kSumRuns words after all of them, are for sumBefore.
 void sumUp(CoherentUints sums, uint group, uint count, ListStates result, uint capacity) {
     const uint length = sumRunLength(count, kMostInOneRun);
     bool of_all = length >= count;

@@ -1,4 +1,4 @@
-// For rasterize: a batch of a tile's splats in shared memory, and which cells each of them meets.
+// For rasterize: a batch of a tile's splats in shared memory, and which cells each of them touches.
 
 // u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
 shared vec4 batch_reference[kBatchSize + 1];  // reference_px relative to the tile, u/z and v/z there
@@ -42,7 +42,7 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool
                              kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
-    if (is_coarse) { return; }  // its cell meets them all
+    if (is_coarse) { return; }  // its cell touches them all
     // A subgroup's slots are consecutive, so that one lane can set the bits of all that are here; either 32
     // divides the slot of lane 0, or the subgroup's width divides 32.
     const uint cells = cellsOf(splat, tile_px, low_pass), first_slot = slot - gl_SubgroupInvocationID;

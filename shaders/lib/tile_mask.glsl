@@ -5,8 +5,8 @@ uint tileOf(uvec2 size_tiles, uvec2 pixel) {
     return (pixel.y / kTileSize) * size_tiles.x + pixel.x / kTileSize;
 }
 
-// The pixel that contains a place, or the nearest one; within the picture even for NaN, of which a clamp
-// alone may make anything.
+// The pixel that contains a place, or the nearest one; within the picture even for NaN, which a clamp alone
+// may turn into anything.
 uvec2 pixelAt(uvec2 size_px, vec2 place_px) {
     return min(uvec2(clamp(place_px, vec2(0), vec2(size_px) - 1)), size_px - 1);
 }

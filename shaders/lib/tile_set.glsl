@@ -1,6 +1,6 @@
-// The tiles that a splat meets, in 64 bits: where its box begins and, if the box has at most 4x4 tiles, a bit
-// for each tile that it meets (under a mask: only tiles of the mask). Otherwise where the box ends, half
-// open; the outline must then tell again which rows meet which tiles.
+// The tiles that a splat touches, in 64 bits: where its box begins and, if the box has at most 4x4 tiles, a
+// bit for each tile that it touches (under a mask: only tiles of the mask). Otherwise where the box ends,
+// half open; the outline must then say again which tiles of which rows it touches.
 //
 //   x0 | y0 << 16,   x1 | y1 << 16                                  a large box; coordinates are below 2^11
 //   x0 | y0 << 16,   1 << 31 | 1 << (column + 4 row) for each tile  a small one

@@ -1,4 +1,4 @@
-// Between the eyes: where a pixel with a given inverse depth lies in the other eye.
+// Between the eyes: where a pixel with a given inverse depth is in the other eye.
 
 #include "lib/move_pixel.glsl"
 
@@ -19,5 +19,5 @@ vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) {
     return kRectified ? vec2(map.shift.x, 0) : map.shift.xy - pixel_px * map.shift.z;
 }
 
-// If errors are predicted, an odd row is warped like the even one above it, with that one's depths.
+// If errors are predicted, an odd row is warped like the even row above it, with that row's depths.
 bool movesEvenRows(WarpView warp) { return kRectified && warp.rows_apart == 2; }

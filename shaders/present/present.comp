@@ -1,7 +1,7 @@
 // present: an eye's picture in the format of the headset's swapchain image: 8 bits per channel and, on
-// request, its depth. Trained values are display-encoded already, as are the bytes of an sRGB image. A
-// program's own picture may lie behind it, and in front of it where the program's depth says so: compared
-// with the depth that stands for all splats of a pixel, unless each was tested by itself.
+// request, its depth. Trained values are already encoded for a display, as are the bytes of an sRGB image. A
+// program's own picture may be behind it, and in front of it where the program's depth says so: that is
+// compared with the depth that stands for all splats of a pixel, unless each splat was tested by itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

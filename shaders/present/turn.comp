@@ -1,5 +1,5 @@
 // turn: shows a presented picture in a view from the same place with other axes, as a headset's compositor
-// does: each pixel from the four around its place, by linear weights, in light.
+// does: each pixel from the four around its place, with linear weights, in linear light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"

@@ -9,12 +9,12 @@ BINOSPLAT_BEGIN_SHARED
 // Tiles are the unit of binning and of patching; the 16x16 of 3DGS and 2DGS (Kerbl et al. 2023, section 6).
 BINOSPLAT_CONSTANT uint kTileSize = 16;
 // Cells are the quarters of a tile that one subgroup owns while blending, so that a splat only costs the
-// cells it meets.
+// cells it touches.
 BINOSPLAT_CONSTANT uint kCellSize = 8;
 BINOSPLAT_CONSTANT uint kCellsPerTile = 4;
 // Splats of a tile that are loaded into shared memory at a time: 128 x 56 bytes = 7 KiB, so that eight or
 // more workgroups fit into the shared memory of a GPU core; a multiple of 32, since each splat has one bit
-// that says which cells it meets.
+// that says which cells it touches.
 BINOSPLAT_CONSTANT uint kBatchSize = 128;
 
 // Threads per workgroup where each thread handles one item: as many as every device supports, and one
@@ -28,7 +28,7 @@ BINOSPLAT_CONSTANT uint kListBlock = 256;
 // Splats that are loaded and dropped together: as many as one workgroup culls.
 BINOSPLAT_CONSTANT uint kPageSplats = kCullBlock;
 
-// Sorting: up to 9 bits a round. A block is what one workgroup ranks: kSortSubgroups subgroups if they are
+// Sorting: up to 9 bits per round. A block is what one workgroup ranks: kSortSubgroups subgroups if they are
 // narrow, more if they are wide (engine/passes/sort.cpp), each with a histogram in shared memory. Beyond half
 // a million keys, blocks grow. Counts are summed in two steps, by runs of kSortRun blocks and then over the
 // runs, each step a few loads per thread.
@@ -159,7 +159,7 @@ BINOSPLAT_CONSTANT uint kMaxTileCost = 0x1fffffu;
 BINOSPLAT_CONSTANT uint kSeenInPart = 0x200000u;
 
 // The finest cycle that an eye resolves, in radians: 1/48 of a degree at its gaze, plus 0.022 (1.32 arc
-// minutes a degree) times the angle from there: the more careful of the two slopes of Guenter et al. 2012,
+// minutes per degree) times the angle from there: the more careful of the two slopes of Guenter et al. 2012,
 // Foveated 3D Graphics.
 BINOSPLAT_CONSTANT float kFovealCycle = 0.000363610f;
 BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;

@@ -1,5 +1,5 @@
-// Lets C++ and GLSL read the same header: vector types of equal layout (GLSL's `scalar`) and typed device
-// addresses.
+// Lets C++ and GLSL read the same header: vector types with the same layout (GLSL's `scalar`) and typed
+// device addresses.
 #ifndef BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
 #define BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
 
@@ -62,7 +62,7 @@ struct DeviceAddress {
 // require alignment.
 #define BINOSPLAT_ALIGNED_ARRAY_OF(Element, align, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = align) buffer Name { Element at[]; }
-// For arrays in which workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
+// For arrays in which workgroups read what others in the same dispatch have written; see lib/last_group.glsl.
 #define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { Element at[]; }
 // The address, stored in memory, of an array aligned to less than eight bytes; Name(it) is the array. A

@@ -60,7 +60,7 @@ struct CompactPass {
     Place middle;
 };
 
-// project: the visible splats, front to back, as each eye sees them, and how many tiles each meets.
+// project: the visible splats, front to back, as each eye sees them, and how many tiles each touches.
 struct ProjectPass {
     SceneChunks chunks;
     EyeViews eyes;  // of the targets, from the first on
@@ -71,7 +71,7 @@ struct ProjectPass {
     Uints tile_counts;       // out
     // out: tiles before each block of kListBlock splats; one target's blocks after the other's
     CoherentUints group_sums;
-    ListStates pairs;  // out: one for each tile that a splat meets
+    ListStates pairs;  // out: one for each tile that a splat touches
     TargetStates targets;
     uint chunk_bits;
     uint splats_apart;  // from one target's splats, sets and counts to the next one's
@@ -79,7 +79,7 @@ struct ProjectPass {
     uint is_dimmed;     // 1: Gaussians that were trained with an opacity that the low-pass dims
 };
 
-// bin and bin_large: a (tile, splat) pair for each tile that a splat meets, front to back.
+// bin and bin_large: a (tile, splat) pair for each tile that a splat touches, front to back.
 struct BinPass {
     EyeViews eyes;
     ProjectedSplats splats;
@@ -135,7 +135,7 @@ struct ContributePass {
     Uints order;           // the splats' indices in the scene
     FloatColours picture;  // as rasterized
     FloatColours wanted;
-    // in and out: kErrorSums or kContributionSums a splat of the scene, of 64 bits, the lower word first
+    // in and out: kErrorSums or kContributionSums per splat of the scene, of 64 bits, the lower word first
     Uints sums;
     uint eye;
 };
@@ -235,7 +235,7 @@ struct NewcomersPass {
     Uints tile_depths;  // WeighPass
     Uints order;
     ListStates visible;
-    Uints source_counts;  // tiles that each splat meets in the source
+    Uints source_counts;  // tiles that each splat touches in the source
     Uints tile_kinds;
     Uints tile_errors;
     WarpCounterss counters;

@@ -328,7 +328,7 @@ struct TargetState {
     uint measured;
     float depth_scale;  // of mesh_depths
     float depth_offset;
-    uint unused;  // a multiple of eight bytes in both languages
+    uint unused;  // makes the size a multiple of eight bytes in both languages
     // 1: every tile shows a picture warped from a history, which stays if the lists' capacity does not
     // suffice
     uint is_made;

@@ -1,5 +1,5 @@
-// compact: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the
-// depth of their centres, or with their distance from the middle between the eyes.
+// compact: lists the visible splats in the scene's order, so that a stable sort breaks ties by index, with
+// the depths of their centres, or their distances from the midpoint between the eyes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

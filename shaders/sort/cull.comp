@@ -1,6 +1,7 @@
-// cull: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is
-// tested as a whole against the planes of the view by its support function, and its low-pass by the projected
-// centre; a 3D Gaussian is tested by its box on the screen. The last workgroup writes the length of the list.
+// cull: finds the splats that may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc
+// is tested as a whole against the planes of the view by its support function, and its low-pass by the
+// projected centre; a 3D Gaussian is tested by its box on the screen. The last workgroup writes the length of
+// the list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -39,7 +40,7 @@ bool reachesInside(CameraSplat splat, float radius, vec3 normal) {
     return isNotNegative(dot(splat.centre, normal) + reachAlong(splat, radius, normal));
 }
 
-// True if a box around the projected centre meets the picture.
+// True if a box around the projected centre touches the picture.
 bool isOnScreen(CameraSplat splat, EyeView eye, vec2 half_px) {
     const vec2 centre_px = eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px;
     const vec2 from_low = centre_px + half_px, to_high = (vec2(eye.size_px) + half_px) - centre_px;
@@ -51,7 +52,7 @@ bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     const vec2 last = vec2(size_tiles) - 1;
     const vec2 first_tile = floor(low_px / float(kTileSize)), last_tile = floor(high_px / float(kTileSize));
     if (any(greaterThan(first_tile, last)) || any(lessThan(last_tile, vec2(0)))) { return false; }
-    // Within the picture even if a corner is NaN, which tells nothing.
+    // Within the picture even if a corner is NaN and says nothing.
     const uvec2 begin = min(uvec2(clamp(first_tile, vec2(0), last)), size_tiles - 1),
                 end = min(uvec2(clamp(last_tile, vec2(0), last)), size_tiles - 1) + 1;
     uint row = begin.y, bits = 0;

@@ -1,6 +1,6 @@
-// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run
-// of blocks replaces each count by the sum over the run's earlier blocks; the last workgroup of all does the
-// same over the runs, and finds where each digit begins.
+// Radix sort, first step of a round: counts how often each digit occurs in each block. The last workgroup of
+// a run of blocks replaces each count by the sum over the run's earlier blocks; the last workgroup of all
+// does the same over the runs, and finds where each digit begins.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -54,7 +54,7 @@ uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
     return sum;
 }
 
-// One thread per digit, so that what they read lies side by side.
+// One thread per digit, so that threads read adjacent values.
 void sumBlocksOfRun(uint run, uint blocks) {
     for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
         pass.run_sums.at[run * pass.digits + digit] =

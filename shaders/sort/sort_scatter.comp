@@ -1,7 +1,7 @@
-// Radix sort, second step of a round: every pair goes to its place. Stable: a subgroup takes a contiguous run
-// of a block's keys, counts its digits, and then walks through the run again, a subgroup's width at a time,
-// ranking equal digits by comparing them across the lanes (Adinets and Merrill 2022, section 4.3, without the
-// chained scan). Keys are read twice, so that a thread holds only one of them.
+// Radix sort, second step of a round: every pair goes to its place. The sort is stable: a subgroup takes a
+// contiguous run of a block's keys, counts its digits, and then walks through the run again, a subgroup's
+// width at a time, ranking equal digits by comparing them across the lanes (Adinets and Merrill 2022, section
+// 4.3, without the chained scan). Keys are read twice, so that a thread holds only one at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -112,7 +112,7 @@ void main() [[subgroup_uniform_control_flow]] {
         const uint digit = digitOf(key);
         const uvec4 peers = matchDigit(digit, subgroupBallot(valid));
         const uint before = subgroupBallotExclusiveBitCount(peers);
-        // The first of several equal digits takes places for all of them and tells the others.
+        // The first of several equal digits takes places for all of them and tells the others where they are.
         uint place = 0;
         if (valid && before == 0) {
             place = atomicAdd(subgroup_digits[own_digits + digit], subgroupBallotBitCount(peers));

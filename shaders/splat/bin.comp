@@ -1,5 +1,6 @@
-// bin: a (tile, splat) pair for each tile that a splat meets, front to back. A small splat's tiles are one
-// bit each; the few larger splats are listed for bin_large, so that one over the whole screen stalls nothing.
+// bin: makes a (tile, splat) pair for each tile that a splat touches, front to back. A small splat's tiles
+// are one bit each; the few larger splats are listed for bin_large, so that one that covers the whole screen
+// does not stall the others.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -83,8 +83,8 @@ void putLarge(uint i, uint lanes) {
     }
     while (first_row < box.w)
         ;
-    // project counted no fewer. If it counted more, the rest become pairs of no tile, which are sorted last
-    // and never blended.
+    // project counted at least as many. If it counted more, the rest become pairs of no tile, which are
+    // sorted last and never blended.
     for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
         pass.tiles.at[pair] = pass.all_tiles;
         pass.ranks.at[pair] = splat;

@@ -1,7 +1,7 @@
-// contribute: how much of an eye's picture each splat makes up, a workgroup per tile: it blends as rasterize
-// does, each cell the splats that meet it, and sums for each splat what its weights are and how far the
-// picture is from a wanted one where it shows, or how it should change. What threads sum are integers, in any
-// order the same.
+// contribute: how much each splat contributes to an eye's picture. A workgroup per tile blends as rasterize
+// does, each cell the splats that touch it, and sums for each splat its weights and the differences from a
+// wanted picture where it is visible, or how it should change. The sums are of integers, so their order does
+// not matter.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,12 +12,13 @@
 #include "passes.h"
 
 layout(push_constant, scalar) uniform Push { ContributePass pass; };
-layout(constant_id = 0) const uint kThreadsPerCell = 32;  // as rasterize has them
+layout(constant_id = 0) const uint kThreadsPerCell = 32;  // as in rasterize
 layout(constant_id = 1) const uint kSplatKind = kDiscs;   // dimmed or not makes no difference here
 layout(constant_id = 2) const bool kFits = false;         // all kContributionSums of a splat, or kErrorSums
 layout(local_size_x_id = 3) in;                           // kCellsPerTile * kThreadsPerCell
-// A cell's threads are a subgroup, of kNarrow lanes. A CPU reads from memory lane by lane, even what is the
-// same for all, and adds to it likewise: so each lane reads one splat for all, and adds one sum of all.
+// A cell's threads are a subgroup of kNarrow lanes. A CPU reads memory lane by lane, even if all lanes read
+// the same, and adds to it in the same way. So each lane reads one splat for all lanes, and adds one sum for
+// all.
 layout(constant_id = 4) const bool kByLanes = false;
 
 const bool kPlaced = false;  // no splat of the scene is read
@@ -30,9 +31,9 @@ const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a
 const uint kWords = kBatchSize / 32;                           // of a bit for each splat
 const uint kNarrow = kContributionSums;
 const uint kSums = kFits ? kContributionSums : kErrorSums;
-const float kMostBehind = 4;  // colours that show through nearly nothing are not told apart from rounding
+const float kMostBehind = 4;  // colours seen through almost nothing cannot be told from rounding
 
-// As rasterize holds them.
+// As in rasterize.
 shared vec4 batch_reference[kBatchSize];
 shared vec4 batch_plane[kBatchSize];
 shared vec4 batch_depth[kBatchSize];
@@ -47,7 +48,7 @@ struct BatchSplat {
 };
 
 vec3 missing[kPixels], unblended[kPixels];  // unblended: what the picture still gets, background included
-float transmittance[kPixels];               // not positive once the pixel takes no more light
+float transmittance[kPixels];               // not positive once the pixel is opaque
 
 void loadSplat(uint slot, uint rank, uvec2 tile_px) {
     const ProjectedSplat splat = pass.splats.at[rank];
@@ -70,8 +71,8 @@ void loadSplat(uint slot, uint rank, uvec2 tile_px) {
 
 float limit(float value) { return clamp(value, -kMaxPixelError, kMaxPixelError); }
 
-// A splat's rho at `d` from its reference, in units of log2, and whether its size makes it: the low-pass has
-// none.
+// A splat's rho at `d` from its reference, in units of log2, and whether it comes from the splat's size,
+// rather than from the low-pass.
 float rhoAt(vec2 d, vec2 at_reference, vec4 plane, vec4 depth_form, out bool by_size) {
     const float u = at_reference.x + plane.x * d.x + plane.y * d.y, v = at_reference.y + plane.z * d.y;
     const float square = u * u + v * v;
@@ -87,8 +88,9 @@ float rhoAt(vec2 d, vec2 at_reference, vec4 plane, vec4 depth_form, out bool by_
     return min(rho3, rho2);
 }
 
-// Blends a splat into the thread's pixels, the first of which lies at `first_px` of the tile: what that adds
-// to its sums. Without branches: pixels that the splat does not reach blend it with weight 0.
+// Blends a splat into the thread's pixels, the first of which is at `first_px` in the tile; returns what this
+// adds to the splat's sums. There are no branches: pixels that the splat does not reach blend it with weight
+// 0.
 int[kContributionSums] blend(BatchSplat splat, vec2 first_px) {
     const vec3 colour = kFits ? unpackColour(splat.colour) : vec3(0);
     float own[kContributionSums];
@@ -112,7 +114,7 @@ int[kContributionSums] blend(BatchSplat splat, vec2 first_px) {
         const vec3 behind =
             clamp(unblended[p] * (1 / (counts ? after : 1)), vec3(-kMostBehind), vec3(kMostBehind));
         const vec3 off = colour - behind;
-        const float varied = opacity < kMaxAlpha ? weight : 0;  // else more of it would not show
+        const float varied = opacity < kMaxAlpha ? weight : 0;  // otherwise more of it would not be visible
         const float pull = varied * dot(off, missing[p]), hold = varied * dot(off, off);
         const float growth = counts && by_size ? rho / kLog2PerRho : 0;
         own[kSumOpacityPull] += limit(pull);
@@ -127,7 +129,8 @@ int[kContributionSums] blend(BatchSplat splat, vec2 first_px) {
     return steps;
 }
 
-// Half of the lanes keep one of two values, and half the other: the sum over two lanes, `apart`.
+// Half of the lanes keep one of two values, half the other: each the sum over two lanes at the distance
+// `apart`.
 int halve(int first, int second, uint apart) {
     const bool keeps_first = (gl_SubgroupInvocationID & apart) == 0;
     return (keeps_first ? first : second) +
@@ -162,7 +165,7 @@ void blendWord(uint bits, uint first_slot, vec2 first_px) {
     }
 }
 
-// The same with kByLanes: kNarrow splats at a time, of which each lane reads one.
+// The same with kByLanes: kNarrow splats at a time, with each lane reading one.
 void blendByLanes(uint bits, uint first_slot, vec2 first_px) {
     while (bits != 0 && subgroupBallot(anyOpen()).x != 0) {
         uint mine = bits;  // from the lane's splat on
@@ -223,7 +226,7 @@ void main() [[subgroup_uniform_control_flow]] {
     begin(tile_px + first_px);
     for (uint first = range.x; first < range.y; first += kBatchSize) {
         const uint splats = min(range.y - first, kBatchSize);
-        barrier();  // the batch before is still being added
+        barrier();  // the previous batch is still being added
         if (thread == 0) { open_threads = 0; }
         if (thread < kCellsPerTile * kWords) { cell_splats[thread / kWords][thread % kWords] = 0; }
         barrier();

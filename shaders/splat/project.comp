@@ -1,5 +1,5 @@
-// project: the visible splats, front to back, as each eye sees them, and how many tiles each meets. The last
-// workgroup writes the length of the list of pairs.
+// project: the visible splats, front to back, as each eye sees them, and how many tiles each touches. The
+// last workgroup writes the length of the list of pairs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -11,7 +11,7 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
-// Only tiles of the mask count; splats that meet none cost little.
+// Only tiles of the mask count; splats that touch none cost little.
 layout(constant_id = 1) const bool kMasked = false;
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
 layout(constant_id = 3) const bool kPlaced = false;  // scenes placed among others
@@ -29,7 +29,7 @@ layout(constant_id = 3) const bool kPlaced = false;  // scenes placed among othe
 
 shared uint group_tiles;
 
-// How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is
+// How many tiles (of the mask, if there is one) the splat touches; `small` has a bit for each if the box is
 // small enough.
 uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     const bool fits = isSmallBox(box);
@@ -69,7 +69,7 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
 // Splats of the target.
 uint firstSplat() { return gl_WorkGroupID.z * pass.splats_apart; }
 
-// Projects a visible splat for this eye; returns how many tiles it meets.
+// Projects a visible splat for this eye; returns how many tiles it touches.
 uint project(uint rank, EyeView eye) {
     const SplatPlace at = placeOfSplat(pass.order.at[rank], pass.chunk_bits);
     const uvec2 size_tiles = eye.size_tiles;
@@ -88,7 +88,7 @@ uint project(uint rank, EyeView eye) {
                    packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
         pass.splats.at[firstSplat() + rank] = p;
     }
-    // Empty if the splat meets no tile: then no splat is written either.
+    // Empty if the splat touches no tile: then no splat is written either.
     pass.tile_sets.at[firstSplat() + rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
     return tiles;
 }

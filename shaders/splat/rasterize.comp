@@ -1,10 +1,10 @@
-// rasterize: blending, front to back, a workgroup per tile. A tile's splats come to shared memory a batch at
-// a time, each with a bit for every cell of 8x8 pixels that it meets; the threads of a cell (one subgroup,
-// where its width allows) then walk over their own splats alone. A thread blends several pixels of a column,
-// so that what it reads from shared memory serves them all.
+// rasterize: blends front to back, with a workgroup per tile. A tile's splats are loaded into shared memory a
+// batch at a time, each with a bit for every cell of 8x8 pixels that it touches; the threads of a cell (one
+// subgroup, if its width allows) then walk only over their own splats. A thread blends several pixels of a
+// column, so that what it reads from shared memory serves all of them.
 //
 // Where an eye does not see sharply, each cell blends a tile of its own as 8x8 samples. The tile is filled
-// from these or, if the eye would see what that loses, blended again by all of the workgroup.
+// from these or, if the eye would notice the loss, blended again by the whole workgroup.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -93,8 +93,8 @@ void blend(BatchSplat splat, vec2 first_px, float apart, uint max_inverse_depth_
     const vec2 d = first_px - reference.xy;
     const float u = reference.z + plane.x * d.x;
     const float q = depth_form.x + depth_form.y * d.x;
-    // Without a low-pass 1/z may be 0, here and at the reference, and no weight must meet an infinite z, not
-    // even 0.
+    // Without a low-pass 1/z may be 0, here and at the reference, and no weight may be multiplied by an
+    // infinite z, not even 0.
     const bool low_pass = kSplatKind != kDiscs || plane.w > 0;
     const float rho2_x = low_pass ? plane.w * (d.x * d.x) : kNoLowPass;
     const float centre_z = low_pass ? 1 / depth_form.x : 0;
@@ -137,9 +137,9 @@ void blend(BatchSplat splat, vec2 first_px, float apart, uint max_inverse_depth_
     any_open = most_open > 0;
 }
 
-// Blends the splats of the batch that meet the cell, in one loop: with a loop over bits inside one over
+// Blends the splats of the batch that touch the cell, in one loop: with a loop over bits inside one over
 // words, NVIDIA's compilers use a fifth more registers, and every pixel's sums would be carried through both.
-// A word without bits blends the splat of no opacity.
+// A word without bits blends the splat without opacity.
 void blendBatch(uint first_slot, uint end_slot, uint cell, vec2 first_px, float apart,
                 uint max_inverse_depth_bits) {
     uint bits = cell_splats[cell][0];
@@ -158,8 +158,8 @@ void blendBatch(uint first_slot, uint end_slot, uint cell, vec2 first_px, float 
         ;
 }
 
-// The same where a cell's threads are a few narrow subgroups. Each lane reads one of the next splats, and the
-// others have it from there: such devices load from shared memory lane by lane, even if all lanes want the
+// The same for cells whose threads are a few narrow subgroups. Each lane reads one of the next splats, and
+// the others get it from there: such devices load from shared memory lane by lane, even if all lanes want the
 // same.
 void blendBatchByLanes(uint lanes, uint first_slot, uint end_slot, uint cell, vec2 first_px, float apart,
                        uint max_inverse_depth_bits) {
@@ -190,8 +190,8 @@ void blendBatchByLanes(uint lanes, uint first_slot, uint end_slot, uint cell, ve
         ;
 }
 
-// The pixel as it is going to be warped: at the depth that stands for it, infinitely far where nothing was
-// blended.
+// The pixel in the form in which it will be warped: at the depth that stands for it, infinitely far away if
+// nothing was blended.
 uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     const float mean = inverse_depth_sums.x / alpha;
     const float inverse_depth = !isPositive(alpha)                              ? 0
@@ -207,8 +207,8 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
 
 #include "lib/leave_tile.glsl"
 
-// Blends the tile or, if they are coarse, each cell its own: the sums of the thread's pixels. `first_px`: of
-// the first of these.
+// Blends the tile or, if tiles are coarse, each cell its own, into the sums of the thread's pixels.
+// `first_px`: the first of these.
 void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_coarse) {
     const float apart = is_coarse ? kSamplesApart : 1;
     const uint max_inverse_depth_bits = floatBitsToUint(pass.eyes.at[gl_WorkGroupID.z].max_inverse_depth);
@@ -320,8 +320,8 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
     }
 }
 
-// Fills each cell's coarse tile from the samples that were blended, unless the eye would see what it lacks: a
-// bit for each of these.
+// Fills each cell's coarse tile from the samples that were blended, unless the eye would notice the loss;
+// returns a bit for each of these.
 uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
     const bool is_there = range.x < range.y;
     barrier();  // batches are still being blended

@@ -1,6 +1,6 @@
-// tile_ranges: where each tile's pairs lie, once they are sorted by tile: one thread per tile searches for
-// its first pair and the next tile's. Under a mask, tiles with pairs are listed for rasterize; the others
-// become background here, which is cheaper than a workgroup each.
+// tile_ranges: finds each tile's pairs, once they are sorted by tile: one thread per tile searches for its
+// first pair and for the next tile's. Under a mask, tiles with pairs are listed for rasterize; the others
+// become background here, which is cheaper than a workgroup for each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -38,7 +38,7 @@ uint firstPairFrom(uint tile, uint begin) {
     return begin;
 }
 
-// True if the tile has any.
+// True if the tile has any pairs.
 bool findPairs(uint tile) {
     const uint number = TARGET.first_tile + tile, begin = firstPairFrom(number, 0),
                end = firstPairFrom(number + 1, begin);
@@ -52,7 +52,7 @@ bool leavesHistory() { return isThere(TARGET.history_tiles); }
 uvec2 sizeTiles() { return pass.eyes.at[gl_WorkGroupID.z].size_tiles; }
 uvec2 sizePx() { return pass.eyes.at[gl_WorkGroupID.z].size_px; }
 
-// True if samples of the tile may suffice: the eye does not see it sharply, and it lies within the picture.
+// True if samples of the tile may be enough: the eye does not see it sharply, and it is within the picture.
 bool mayBeCoarse(uint tile) {
     const uint columns = sizeTiles().x;
     const uvec2 at = uvec2(tile % columns, tile / columns);
@@ -97,7 +97,7 @@ void main() [[subgroup_uniform_control_flow]] {
     }
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
-    // If the capacity for pairs did not suffice, what the history made stays.
+    // If the capacity for pairs was not enough, what was made from the history stays.
     const bool is_void = TARGET.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count ||
                                                  pass.visible.at[0].needed != pass.visible.at[0].count);
     const bool of_list = isThere(TARGET.tile_list);

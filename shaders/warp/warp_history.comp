@@ -1,8 +1,8 @@
 // warp_history: warps the picture that an eye showed before, and predicts each tile's error. A workgroup
-// makes 128x16 pixels, a thread a block of 4x8. If the places of a block's pixels in the history are just
-// shifted and slightly rotated, its thread goes over the source pixels row by row and resamples first along
-// the row, then along columns, so that each pixel is read once. Other blocks, where depths differ or the
-// history ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for
+// makes 128x16 pixels, and each thread a block of 4x8. If the places of a block's pixels in the history are
+// just shifted and slightly rotated, its thread goes over the source pixels row by row and resamples first
+// along the row, then along columns, so that each pixel is read once. Other blocks, where depths differ or
+// the history ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for
 // those.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -150,8 +150,8 @@ void resampleBlock(HistoryView view, uvec2 first, BlockMoves moves, ivec2 last) 
         ;
 }
 
-// The inverse depth of content that lands at a place from so far away in the history that it is not among its
-// neighbours; 0 if nothing is in front of `known`.
+// The inverse depth of content that lands at a place but was so far away in the history that it is not among
+// its neighbours; 0 if nothing is in front of `known`.
 float nearestOnTheWay(HistoryView view, vec2 wanted_px, vec2 by_depth, float known) {
     const float px_by_depth = max(abs(by_depth.x), abs(by_depth.y));
     const uint steps = min(uint(px_by_depth * view.nearest / kHistorySearchStep), kHistoryMostSearched);
@@ -234,7 +234,7 @@ bool findBlock(HistoryView view, uvec2 first, ivec2 last, out BlockMoves moves, 
         depths = vec2(min(depths.x, here), max(depths.y, here));
     }
     depths.y = max(depths.y, nearestOnTheWay(view, middle_px, by_depth, depths.y));
-    // What is found there must belong there: it lands where it was looked for.
+    // What is found there must belong there: it must land where it was looked for.
     const float pixels = float(kColumns * kRows),
                 off_px = max(abs(by_depth.x), abs(by_depth.y)) * abs(sum / pixels - guess);
     valid = valid && off_px <= kHistoryAgrees;
@@ -318,7 +318,7 @@ void main() {
                 squared_gradients += its;
             }
             const float pixels_each = 0.5 * float(kColumns * kRows);
-            // Pixels between the two may be worse, unless nothing moves.
+            // Pixels between the two may have larger errors, unless nothing moves.
             atomicAdd(cell_grown[cell],
                       uint(max(pixels_each * grown, 2 * pixels_each * least) * kErrorSteps));
             atomicAdd(tile_squared_gradient[block.x / kTileBlocks],

@@ -1,9 +1,9 @@
 // warp_pixels: the pixels of an eye's picture that warp_history has left out, one thread per pixel.
 //
-// A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a
-// place says where the place is. Such a search always finds something, so a place counts only if the
-// history's pixel there, moved forwards, meets the pixel for which it is wanted. The search starts from the
-// nearest and from the farthest depth around; of the two results, the nearer one counts.
+// A place is found backwards, by a fixed-point search (Bowles et al. 2012, Iterative Image Warping): the
+// depth at a place says where the place should be. Such a search always finds something, so a place counts
+// only if the history's pixel there, moved forwards, hits the pixel that is being made. The search starts
+// from the nearest and from the farthest depth around; of the two results, the nearer one counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -125,7 +125,7 @@ float makePixel(HistoryView view, uvec2 pixel, vec2 depths, out float unseen, ou
     vec2 place_px = takes_near ? near_px : far_px;
     const bool found = near_found || far_found;
     unseen = found ? 0 : seen.word == 0 || !isInHistory(view, place_px) ? kUnseenError : kUncoveredError;
-    // A pixel that blends two depths moves with what stands in front, so that a silhouette keeps its shape.
+    // A pixel that blends two depths moves with the one in front, so that a silhouette keeps its shape.
     if (found && !is_flat) {
         const vec3 with_front =
             movePixelAnywhere(view.history_from_now, wanted_px, frontAround(view, place_px));
@@ -139,7 +139,7 @@ float makePixel(HistoryView view, uvec2 pixel, vec2 depths, out float unseen, ou
     }
     const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
     vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
-    // Next to what was hidden, a pixel is taken as it is, off by up to half its width.
+    // Next to what was hidden, a pixel is copied as it is, misplaced by up to half its width.
     const vec2 middle_px = floor(place_px) + 0.5;
     if (reachesHidden(view, ivec2(middle_px), ivec2(middle_px))) {
         uncertain_px = abs(uncertain_px) + abs(place_px - middle_px);

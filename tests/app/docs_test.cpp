@@ -105,8 +105,8 @@ std::vector<std::string> wordsOf(const std::string& line) {
     return words;
 }
 
-// The words after "binosplat" in a line that calls it, with or without a folder and variables in front; empty
-// otherwise.
+// The words after "binosplat" in a line that calls it, with or without a folder and variables before it;
+// empty otherwise.
 std::vector<std::string> callOfProgram(const std::string& line) {
     const std::vector<std::string> words = wordsOf(line);
     const auto is_variable = [](const std::string& word) {
@@ -125,10 +125,10 @@ bool isPlaceholder(const std::string& word) {
     return std::isupper(static_cast<unsigned char>(word[0])) != 0 || word.find('|') != std::string::npos;
 }
 
-// The reason why `binosplat CALL` would be refused, or "". Values are checked only where no word is a
+// The reason why `binosplat CALL` would be refused, or "". Values are checked only if no word is a
 // placeholder.
 std::string wrongCall(std::vector<std::string> call) {
-    // Mentioned, not called.
+    // Only mentioned, not called.
     if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) {
         return "";
     }

@@ -1,4 +1,4 @@
-// Facts about an installed program: install_test.txt.
+// Facts about an installed program; see install_test.txt.
 #include "tests/app/program_script.h"
 #include "tests/engine/files/web/web_server.h"
 

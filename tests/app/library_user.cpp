@@ -1,7 +1,7 @@
-// For fault_test: renders with the library and loads a second scene, for which there may be no memory. Says
-// how that ended, and whether the first scene, if it stays, still gives the same pictures, and whether half
-// floats equal rounded floats. With SCENE: says how much of it is seen from the start view with the usual
-// near plane, and where that view is.
+// For fault_test: renders with the library and loads a second scene, for which there may not be enough
+// memory. Says how that ended, whether the first scene, if it is still there, gives the same pictures, and
+// whether half floats equal rounded floats. With SCENE: says how much of it is seen from the start view with
+// the usual near plane, and where that view is.
 #include <binosplat.hpp>
 
 #include <algorithm>

@@ -30,7 +30,7 @@ double stepAt(const Image& a, const Image& b, std::size_t shift, std::size_t col
     return sum / a.size_px.y;
 }
 
-// The bytes from the first box or chunk with these four letters on.
+// The bytes beginning with the first box or chunk that has these four letters.
 std::string after(const std::string& bytes, const std::string& letters) {
     const std::size_t at = bytes.find(letters);
     return at == std::string::npos ? "" : bytes.substr(at + 4);

@@ -7,7 +7,7 @@
 
 SUITE(web_program) {
 
-// With a cache beside the workplace's folder.
+// With a cache next to the workplace's folder.
 std::string environmentOf(const Workplace& work) {
     return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'",
                        work.base.string());
@@ -45,7 +45,7 @@ TEST_CASE_FIXTURE(AtWork,
     work.write("one.toml", "[bench]\nmodes = [\"mono\"]\nscores = [\"none\"]\nwarm-up = 0\nrepeats = 1\n");
     CHECK(contains(done("bench " + address + " --out bench --config one.toml --size 64x64"), "wall.ply"));
 #ifdef BINOSPLAT_OPENXR
-    // Without a command as well, as for a file.
+    // Also without a command, as for a file.
     work.go(address + " --simulate --frames 2 --load-first --mode mono --hide-panel --hide-hands --out seen",
             environmentOf(work));
 #endif

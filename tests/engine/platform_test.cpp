@@ -1,5 +1,5 @@
-// Facts about requests to the operating system, and about files that somebody else prepared: links, pipes,
-// long ones.
+// Facts about requests to the operating system, and about files that someone else has prepared: links, pipes,
+// long files.
 
 #include "engine/part_file.h"
 #include "engine/picture/image_io.h"
@@ -22,7 +22,7 @@ SUITE(platform) {
 
 void makePipe(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
 
-// Waiting for a pipe that nobody writes to would never end: the test then ends by SIGALRM.
+// Waiting for a pipe that nobody writes to would never end; SIGALRM ends the test instead.
 struct Patience {
     Patience() { ::alarm(60); }
     ~Patience() { ::alarm(0); }
@@ -60,7 +60,7 @@ TEST_CASE_FIXTURE(AtWork, "a file or a folder is made only where nothing is, and
     errno = 0;
     CHECK(createFile(work.path / "no" / "folder") == nullptr);
     CHECK(errno == ENOENT);
-    // Nobody else may enter a folder that is made.
+    // Nobody else may enter the folders that are made.
     const fs::path one = createFolder(work.path, "mine-"), other = createFolder(work.path, "mine-");
     CHECK(one != other);
     for (const fs::path& folder : {one, other}) {

@@ -1,13 +1,12 @@
-// What frames do that may wait: the calls that the thread which shows them makes between two of them.
+// What frames do that may block: the calls that the thread which shows them makes from one frame to the next.
 // BINOSPLAT_FAULT_WAITS=FILE: a line for each frame, its number from 0 and how many calls of which kind it
 // made: "7 memory 2 queue 1". A frame lasts from the xrEndFrame before it to its own, the first one from the
-// first xrWaitFrame. What a runtime does while one of its functions is called is its own. This takes both
-// layers, Vulkan's and OpenXR's.
-// Without OpenXR's, a frame ends as a window gets a picture, and begins with the one before.
-// The kinds are those of `watchedCalls`, and waits for a fence, signalled or not, with a timeout, if its work
-// was submitted last in this frame ("fence-of-this-frame"), in the one before, so that the device runs dry
-// ("fence-of-last-frame"), or by another thread or nobody ("fence-of-others"). A frame may wait for what its
-// own thread submitted two frames ago.
+// first xrWaitFrame. What a runtime does while one of its functions is called does not count. This takes both
+// layers, Vulkan's and OpenXR's. Without OpenXR's, a frame ends when a window is given a picture, and begins
+// with the one before. The kinds are those of `watchedCalls`, and waits for a fence, signalled or not, with a
+// timeout, if its work was submitted last in this frame ("fence-of-this-frame"), in the one before, so that
+// the device runs dry ("fence-of-last-frame"), or by another thread or nobody ("fence-of-others"). A frame
+// may wait for what its own thread submitted two frames ago.
 #pragma once
 
 #include "tests/faults/live.h"
@@ -66,7 +65,7 @@ inline void endFrame() {
     std::fflush(waitsFile());
 }
 
-// A window gets a picture.
+// A window is given a picture.
 inline void notePresented() {
     if (waitsFile() == nullptr || has_runtime) { return; }
     if (std::exchange(shows_frames, true)) { endFrame(); }

@@ -51,7 +51,7 @@ void readScene(const std::string& input) {
     readScene({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
 }
 
-// Files begin as their format requires, so that no time is spent finding that.
+// Files begin as their format requires, so that no time is spent on finding that out.
 void readPly(Bytes input) { readScene("ply\n" + textOf(input)); }
 // The stream before compression, since a fuzzer does not find its way through gzip.
 void readSpz(Bytes input) { readScene(test::deflated("NGSP" + textOf(input), MAX_WBITS + 16, 1)); }

@@ -1,4 +1,4 @@
-// The fuzzed parsers, by name. An ordinary test replays the same list on the inputs that were kept.
+// The fuzzed parsers, by name. An ordinary test runs the same list on the inputs that were kept.
 #pragma once
 
 #include <cstddef>

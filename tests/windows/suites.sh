@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Cross-compiles the test programs that need no POSIX and runs them under Wine, on Mesa's lavapipe:
+# Cross-compiles the test programs that do not need POSIX and runs them under Wine, on Mesa's lavapipe:
 # `tests/windows/suites.sh [options of ctest]`. tests/CMakeLists.txt says which suites these are;
 # BINOSPLAT_JOBS is the number of compilers that run at a time.
 set -euo pipefail

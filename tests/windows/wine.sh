@@ -9,7 +9,7 @@ for tool in wine Xvfb unzip python3; do
 done
 export WINEPREFIX=${WINEPREFIX:-$PWD/build/windows-wine} WINEDEBUG=${WINEDEBUG:--all} LC_ALL=C.UTF-8
 mkdir -p "$WINEPREFIX"
-# Wine has Vulkan only with a screen.
+# Wine supports Vulkan only with a screen.
 exec {wine_screen}< <(exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp 2>/dev/null)
 wine_screen_process=$!
 trap 'wineserver -k || true; kill "$wine_screen_process"' EXIT

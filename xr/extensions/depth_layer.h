@@ -1,4 +1,4 @@
-// XR_KHR_composition_layer_depth: an eye's depth beside its picture.
+// XR_KHR_composition_layer_depth: an eye's depth along with its picture.
 #pragma once
 
 #include "xr/swapchain.h"

@@ -12,7 +12,7 @@ namespace binosplat::xr {
 
 class EyeGaze {
 public:
-    // `actions` outlives this.
+    // `actions` must outlive this.
     EyeGaze(const Session& session, const Actions& actions) : session_(session), actions_(actions) {}
     // bind() comes before the actions are attached, makeSpace() after. Without eye tracking, or if it was not
     // requested, they do nothing.

@@ -20,7 +20,7 @@ struct HandJoint {
 };
 using HandJoints = std::array<HandJoint, XR_HAND_JOINT_COUNT_EXT>;
 
-// Both hands of a session; never found if the runtime has no hand tracking or it fails, see Troubles.
+// Both hands of a session; never found if the runtime does not track hands or fails to do so; see Troubles.
 class HandTracking {
 public:
     explicit HandTracking(const Session& session);

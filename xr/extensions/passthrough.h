@@ -14,7 +14,7 @@ public:
     Passthrough(const Passthrough&) = delete;
     Passthrough& operator=(const Passthrough&) = delete;
 
-    // Whether the room is to be seen from the next frame on. The cameras rest while it is not.
+    // Whether the room is to be seen from the next frame on. The cameras are paused while it is not.
     void show(bool shown);
     // For a frame's layers, below all others; null: the room is not seen. It stays as it is until the next
     // call of show().
@@ -25,7 +25,7 @@ private:
     void run(bool runs) const;
 
     const Instance& instance_;
-    XrSession session_;  // what is made below ends with it
+    XrSession session_;  // destroying it ends what is made below
     XrPassthroughFB passthrough_ = XR_NULL_HANDLE;
     XrCompositionLayerPassthroughFB layer_{};
     bool is_shown_ = false, fails_ = false;

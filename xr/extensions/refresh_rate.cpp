@@ -1,4 +1,4 @@
-// Asking for the display's rates.
+// Reads and requests the display's rates.
 #include "xr/extensions/refresh_rate.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Reading the meshes.
+// Reads the meshes.
 #include "xr/extensions/visibility_mask.h"
 
 namespace binosplat::xr {

@@ -1,4 +1,4 @@
-// The runtime's Vulkan requirements, and making instance and device through it.
+// Reads the runtime's Vulkan requirements, and makes the instance and device through it.
 #include "xr/extensions/vulkan_enable2.h"
 
 namespace binosplat::xr {
@@ -22,7 +22,7 @@ VkPhysicalDevice graphicsDevice(const Instance& instance, VkInstance vulkan_inst
     return chosen;
 }
 
-// Calls the runtime's `function`, which has Vulkan's result besides its own.
+// Calls the runtime's `function`, which returns Vulkan's result in addition to its own.
 template <typename Function, typename Made, typename Info>
 Made create(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, Info info,
             const char* function) {

@@ -1,5 +1,5 @@
 // Additions to OpenXR since 1.0.20, the version of Debian bookworm's headers, as far as this runtime has
-// them: names, values and layouts of the registry (xr.xml). Newer headers declare them themselves.
+// them, with names, values and layouts from the registry (xr.xml). Newer headers declare them themselves.
 #pragma once
 
 #include <openxr/openxr.h>

@@ -1,4 +1,4 @@
-// Rendering a picture beside the frames, which must not wait for it.
+// Renders a picture alongside the frames, which must not wait for it.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
@@ -10,13 +10,13 @@ namespace binosplat {
 
 class PictureShot {
 public:
-    // What these eyes see of `scene`, which stays until the picture is taken.
+    // What these eyes see of `scene`, which must exist until the picture is taken.
     PictureShot(const Context& context, const GpuScene& scene, std::vector<Eye> eyes,
                 const FrameSettings& settings)
         : context_(&context), scene_(scene.asItIs()), eyes_(std::move(eyes)), settings_(settings) {}
 
-    // By a frame of its own with kernels of its own, on any thread: frames go on meanwhile. Waits for the
-    // device. Throws Error if it lacks the memory.
+    // With a frame and kernels of its own, on any thread, while other frames go on. Waits for the device.
+    // Throws Error if it does not have enough memory.
     [[nodiscard]] std::vector<Image> take() const {
         StereoFrame frame(*context_, scene_);
         frame.render(eyes_, settings_);

@@ -1,4 +1,4 @@
-// Names, folders, and a thread.
+// Names, folders, and a thread for saving pictures.
 #include "app/view/files/picture_writer.h"
 
 #include "engine/error.h"
@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 100;  // in bytes, of a scene
 
-// Pictures are never overwritten: the second one of a second is "NAME-2".
+// Pictures are never overwritten: the second one within a second is "NAME-2".
 std::string freeName(const fs::path& folder, const std::string& name) {
     for (int number = 1;; ++number) {
         const std::string numbered = number == 1 ? name : fmt::format("{}-{}", name, number);
-        std::error_code ignored;  // if looking fails, writing will fail too, and will say why
+        std::error_code ignored;  // if this fails, writing will fail too, and will say why
         if (!fs::exists(folder / (numbered + extensionOf(PictureKind::kDisplay)), ignored)) {
             return numbered;
         }
@@ -63,12 +63,12 @@ std::string pictureName(const std::string& scene, const std::tm& when) {
                                           : std::pair(path.substr(0, slash), path.substr(slash + 1));
     };
     auto [folder, name] = lastPart(scene);
-    // What all folders of a kind call their file says nothing.
+    // A file name that all folders of a kind use says nothing.
     if (name == "meta.json" || name == "lod-meta.json" || name == "point_cloud.ply") {
         name = lastPart(folder).second;
     }
     if (const std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0) { name.resize(dot); }
-    for (char& letter : name) {  // Windows has no others in names
+    for (char& letter : name) {  // Windows allows no others in names
         if (static_cast<unsigned char>(letter) < 0x20 ||
             std::string_view("<>\"|?*").find(letter) != std::string_view::npos) {
             letter = '_';

@@ -1,4 +1,4 @@
-// Choosing what fits.
+// Chooses the settings that fit.
 #include "app/view/governor/governor.h"
 
 #include <fmt/format.h>
@@ -12,11 +12,11 @@ namespace binosplat {
 
 namespace {
 
-// A tenth of the period is left free, since we cannot know what else the compositor and the machine do.
-// Settings that are still unproven, and calm changes, must need even less; so must a change after one that
-// was not enough.
+// A tenth of the period is left free, since we cannot know what else the compositor and the machine are
+// doing. Settings that are still unproven, and changes without need, must take even less; so must a change
+// after one that was not enough.
 constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.8;  // kAgain: times as much for each
-// A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not
+// A smaller rise in the budget is not worth a change; if a smaller share of it is spent, it does not
 // determine the frame time.
 constexpr double kLeastRise = 1.1, kSpent = 0.75;
 // Pixels are not all of a frame's cost: fewer of them save less than their share, more are assumed to cost
@@ -31,8 +31,8 @@ constexpr std::size_t kFewestFrames = 12;
 constexpr double kWindowSeconds = 0.5;
 constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstWaitSeconds = 10.0,
                  kLongestWaitSeconds = 300.0;
-// If the lowest settings miss as many displays as the best ones did, others cause the misses. Pacing may
-// react to frame times only after some frames.
+// If the lowest settings miss as many displays as the best ones did, something else causes the misses. Pacing
+// may take some frames to react to frame times.
 constexpr std::size_t kBlameFrames = 20;
 constexpr const char* kOthersMiss = "displays are missed whatever is drawn";
 constexpr double kSameLost = 0.25;
@@ -73,7 +73,7 @@ void keep(std::deque<double>& recent, double value) {
     if (recent.size() > kWindow) { recent.pop_front(); }
 }
 
-// With as many digits as are shown.
+// Rounded to as many digits as are shown.
 double inHundredths(double value) { return std::floor(100.0 * value + 1e-6) / 100.0; }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
@@ -228,7 +228,7 @@ void Governor::measure(const GovernedFrame& frame) {
 }
 
 void Governor::makeItFit(double now_ms, std::size_t frames, bool takes_too_long) {
-    // Of displays that others miss no step is enough: the least settings soon tell them apart.
+    // If something else causes the missed displays, no step is enough; the lowest settings soon show that.
     const bool is_least = downs_ >= 2 && !takes_too_long;
     const double most_ms = is_least ? 0.0 : kTarget * std::pow(kAgain, downs_) * roomMs();
     const double work = medianOf(recent_work_, frames);

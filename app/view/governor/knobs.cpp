@@ -1,4 +1,4 @@
-// A regression over the knobs that were in use.
+// A regression over the settings that were in use.
 #include "app/view/governor/knobs.h"
 
 #include <algorithm>
@@ -10,27 +10,27 @@ namespace binosplat {
 
 namespace {
 
-// The work that a bound takes grows by 4 to 12 % per dB: a higher bound may cost the most, a lower one save
-// the least. Errors fall by this much per dB.
+// The work that a bound takes grows by 4 to 12 % per dB. A higher bound is assumed to cost the most, a lower
+// one to save the least. Errors fall by this much per dB.
 constexpr double kWorkUpPerDb = 0.1, kWorkDownPerDb = 0.05, kErrorDbPerDb = 0.6, kMostWorkPerDb = 0.2;
 // Before anything is measured: an indoor picture, and the error of `temporal` within a bound.
 constexpr double kUsualLoss = 1e-4, kUsualBelowBoundDb = 14.0;
-// A guess at the shares of a frame's time. A few visits cannot tell all four apart, and leave the others near
+// A guess at the shares of a frame's time. A few visits cannot determine all four, and leave the others near
 // this guess.
 constexpr std::array<double, 4> kUsualShares{0.1, 0.15, 0.45, 0.5};
 constexpr double kTrustInUsual = 0.0005;
 constexpr std::size_t kMostVisits = 8, kMostFrames = 9;
 // By half in four seconds.
 constexpr double kLeastWeight = 0.05, kForgottenPerSecond = 0.84;
-constexpr int kFitRounds = 24;  // starting from the frame before's
+constexpr int kFitRounds = 24;  // starting from the previous frame's
 constexpr double kSmoothing = 0.15, kLossSmoothing = 0.05;
-// The head may soon move again as it did: work and errors fall slowly, by half in ten seconds at 90 Hz.
+// The head may soon move again as before, so work and errors fall slowly, by half in ten seconds at 90 Hz.
 constexpr double kFading = 0.99923;
-// All visits take longer, or all less, when the scene or the device's clock has changed.
+// All visits take longer, or all take less time, if the scene or the device's clock rate has changed.
 constexpr double kChangedTime = 0.12;
 constexpr std::size_t kSeenForChange = 3, kLastingChange = 12;
 
-// The lower of the two middle ones: disturbances make frames slower.
+// The lower of the two middle values, since disturbances make frames slower.
 double lowerMedianOf(std::deque<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
     std::ranges::nth_element(values, middle);
@@ -42,7 +42,7 @@ void pushNew(std::deque<double>& values, double value) {
     if (values.size() > kMostFrames) { values.pop_front(); }
 }
 
-// What half of a resolution loses is 7 / scale^3 times this.
+// The loss at half of a resolution is 7 / scale^3 times this.
 double lossOf(double half_loss, double scale) { return half_loss * scale * scale * scale / 7.0; }
 
 double follow(double value, double now) {
@@ -92,7 +92,7 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     }
     work_ = follow(work_, frame.work);
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
-    // Once losses are measured, a frame without one had no loss on its few tiles.
+    // Once losses have been measured, a frame without one had no loss on its few tiles.
     if (frame.half_loss > 0.0 || losses_ > 0) {
         loss_ += std::max(1.0 / ++losses_, kLossSmoothing) * (lossOf(frame.half_loss, knobs.scale) - loss_);
     }
@@ -162,8 +162,8 @@ KnobModel::Terms KnobModel::usualShares() const {
     return usual;
 }
 
-// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits
-// do not say: coordinate descent.
+// Finds shares of at least 0 that fit the visits' times in relative terms, and stay near the usual ones where
+// the visits say nothing, by coordinate descent.
 void KnobModel::fit() {
     const Visit& now = visits_.back();
     const Terms usual = usualShares();
@@ -181,7 +181,7 @@ void KnobModel::fit() {
             shares_[i] = std::max(product / square, 0.0);
         }
     }
-    // The present frames are right.
+    // The present frames are reliable.
     const double expected = sumOf(termsOf(now.knobs.scale, now.work), shares_);
     for (double& share : shares_) { share *= now.ms / expected; }
     if (settling_ == 0) { return; }

@@ -1,6 +1,6 @@
 // The frames that a wearer got in the last second, by the times at which the runtime displays them, and how
-// many of them were late. Pure: no clock. A frame is late by the period at its time: runtimes may state
-// longer ones when frames are late.
+// many of them were late. It does not use a clock. Whether a frame is late is judged by the period at its
+// time, since runtimes may report longer periods when frames are late.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace binosplat {
 class MetDisplays {
 public:
     // A frame: when it is displayed, in nanoseconds of any clock, and the display's period. `follows`: the
-    // frame before was shown, too.
+    // previous frame was shown, too.
     void add(std::int64_t display_time_ns, double period_ms, bool follows) {
         if (!(period_ms > 0.0)) { return; }
         const std::int64_t step_ns = frames_.empty() ? 0 : display_time_ns - frames_.back().time_ns;
@@ -25,7 +25,7 @@ public:
         // When the rate changes, the step may be either.
         const double longest_ms = kLatePeriods * std::max(period_ms, std::exchange(period_ms_, period_ms));
         frames_.push_back({display_time_ns, is_known && 1e-6 * static_cast<double>(step_ns) > longest_ms});
-        // The last second's, and the one before these.
+        // Those of the last second, and the one before them.
         while (frames_.size() > 2 && frames_[1].time_ns <= display_time_ns - kSecondNs) {
             frames_.pop_front();
         }
@@ -59,7 +59,7 @@ private:
     std::deque<Frame> frames_;
 };
 
-// What a frame took, in milliseconds: the GPU, the program's thread of a processor, and the time until the
+// What a frame cost, in milliseconds: on the GPU, on the CPU for the program's thread, and the time until the
 // frame was handed over.
 struct FrameCost {
     double gpu_ms = 0.0, busy_ms = 0.0, open_ms = 0.0;

@@ -1,5 +1,5 @@
-// Displays that were missed, and the share of time that others leave according to them: the compositor,
-// another program. Pure, like the governor.
+// Missed displays, and the share of time that, judging by them, others leave: the compositor, another
+// program. Pure, like the governor.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Steps of an eighth.
+// Changes the number of splats in steps of an eighth.
 #include "app/view/governor/splat_budget.h"
 
 #include <algorithm>

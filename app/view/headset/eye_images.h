@@ -8,33 +8,33 @@
 
 namespace binosplat {
 
-// Throws Error (exit code 3) if the runtime has no 8-bit RGBA or BGRA images.
+// Throws Error (exit code 3) if the runtime does not have 8-bit RGBA or BGRA images.
 vk::Format chooseEyeFormat(const xr::Session& session);
 
 class EyeImages {
 public:
-    // `presenter` outlives this.
+    // `presenter` must outlive this.
     EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    // Frames may be smaller than the images: from now on they are of this size, at most sizePx().
+    // Frames may be smaller than the images: from now on they have this size, at most sizePx().
     void draw(glm::uvec2 part_px) { part_px_ = glm::min(part_px, size_px_); }
     [[nodiscard]] glm::uvec2 partPx() const { return part_px_; }
-    // The runtime refuses depth after all: from now on there is none.
+    // The runtime turned out to refuse depth: from now on there is none.
     void dropDepth();
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
 
-    // Before anything is recorded: takes an eye's image of this frame, and its depth image if `with_depth`
-    // and the runtime takes depth.
+    // Before anything is recorded: acquires an eye's image for this frame, and its depth image if
+    // `with_depth` is set and the runtime accepts depth.
     void acquire(int eye, bool with_depth);
     // Whether alpha is kept, to show the room behind the scene.
     void seeThrough(bool see_through) { see_through_ = see_through; }
-    // Between begin and submit of `commands`, into the images that acquire() took; may be repeated. `near` in
+    // Between begin and submit of `commands`, into the images from acquire(); may be repeated. `near` is in
     // scene units.
     void present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by,
                  double near);
     void clear(Commands& commands, int eye, const glm::vec4& colour);
-    // After submit: releases what acquire() took.
+    // After submit: releases the images from acquire().
     void release();
 
     // The part of `eye` that was presented in this frame, for a layer.

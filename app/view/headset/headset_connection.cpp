@@ -1,4 +1,4 @@
-// The next session.
+// Begins the next session.
 #include "app/view/headset/headset_connection.h"
 
 #include "app/terminal/interrupt.h"
@@ -12,10 +12,10 @@ namespace binosplat {
 
 namespace {
 
-// How often to look whether an unplugged headset is back.
+// How often to check whether an unplugged headset is back.
 constexpr std::chrono::milliseconds kBetweenSearches(200), kPause(5);
-// How often, and how far apart, to ask again for a session that a headset refuses just after it was plugged
-// in.
+// How many times, and how far apart, to ask again for a session that a headset refuses just after it was
+// plugged in.
 constexpr int kMostFailures = 10;
 constexpr std::chrono::milliseconds kBetweenFailures(1000);
 

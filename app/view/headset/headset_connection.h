@@ -1,4 +1,4 @@
-// A headset's sessions, one after the other: a lost one is followed by the next, once there is a headset.
+// A headset's sessions, one after another: a lost one is followed by the next, once there is a headset.
 #pragma once
 
 #include "app/view/headset/connected_headset.h"
@@ -16,7 +16,7 @@ public:
     using Say = std::function<void(const std::string&)>;
 
     // Begins the first session; if that is lost at once, waits for the next as usual. `instance` and
-    // `context` outlive this; `panel_px` is the size of the panel's picture. Throws Interrupted while
+    // `context` must outlive this; `panel_px` is the size of the panel's picture. Throws Interrupted while
     // waiting, and what search() throws.
     HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say);
 
@@ -47,7 +47,7 @@ private:
     Losses losses_;     // since a frame was shown
     int failures_ = 0;  // in a row, to begin the next session
     std::string why_lost_;
-    bool is_gone_ = false;  // the headset is gone, and that has been reported
+    bool is_gone_ = false;  // the headset is gone, and this has been reported
     std::chrono::steady_clock::time_point next_search_{};
 };
 

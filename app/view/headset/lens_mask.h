@@ -12,9 +12,9 @@ namespace binosplat {
 
 class LensMask {
 public:
-    // The hidden tiles by eye, as FrameSettings takes them, valid until the next call; empty if nothing is
-    // hidden. Recomputed only if a mesh, the angles or the size have changed. Meshes with the `version` of
-    // the last call are those of the last call.
+    // The hidden tiles for each eye, as FrameSettings expects them, valid until the next call; empty if
+    // nothing is hidden. Recomputed only if a mesh, the angles or the size have changed. Meshes with the same
+    // `version` as in the last call are the same meshes.
     std::array<std::span<const std::uint8_t>, 2> update(const std::array<xr::HiddenMesh, 2>& meshes,
                                                         int version, const std::array<xr::EyeView, 2>& views,
                                                         glm::uvec2 size_px);

@@ -9,7 +9,8 @@ class Losses {
 public:
     using Time = std::chrono::steady_clock::time_point;
 
-    // One more at `now`; false: too many in a row. A loss long after the previous one begins a new row.
+    // One more at `now`; false: too many in a row. A loss long after the previous one is counted as the first
+    // again.
     [[nodiscard]] bool add(Time now) {
         if (count_ > 0 && now - last_ > kLong) { count_ = 0; }
         last_ = now;

@@ -19,7 +19,7 @@ namespace binosplat {
 
 namespace {
 
-// Recordings that may be in flight: earlier ones are done.
+// Recordings that may be in flight; earlier ones are done.
 constexpr int kFramesInFlight = 2;
 // More than any page of the panel draws.
 constexpr int kMostVertices = 1 << 16, kMostIndices = 3 * kMostVertices / 2;

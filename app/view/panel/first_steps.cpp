@@ -1,4 +1,4 @@
-// Three small drawings, and a file that says that they were seen.
+// Three small drawings, and a file that records that they were shown.
 #include "app/view/panel/first_steps.h"
 
 #include "app/view/panel/message_picture.h"
@@ -29,7 +29,7 @@ double toSegment(const glm::dvec2& at, const glm::dvec2& a, const glm::dvec2& b)
     return glm::distance(at, a + t * (b - a));
 }
 
-// What is drawn at a place of the square from -1 to 1 each way, y down.
+// What is drawn at a point of the square from -1 to 1 in each direction, y down.
 struct Pen {
     glm::dvec2 at;
     DrawnPoint point{};
@@ -116,7 +116,8 @@ void FirstSteps::look() {
     if (std::exchange(has_looked_, true) || shown_ == FirstStepsShown::kNever) { return; }
     files_.read("looking for what was shown",
                 [this, always = shown_ == FirstStepsShown::kAlways]() -> FileWorker::Done {
-                    bool were_shown = true;  // where nothing can be kept, they would be shown each time
+                    bool were_shown =
+                        true;  // otherwise they would be shown every time if nothing can be saved
                     try {
                         std::error_code ignored;
                         were_shown = !always && std::filesystem::exists(seenFile(), ignored);

@@ -1,4 +1,4 @@
-// The gestures that one needs first, shown before the eyes when the viewer is first started.
+// The most important gestures, shown in front of the eyes when the viewer is first started.
 #pragma once
 
 #include "app/view/files/file_worker.h"
@@ -11,15 +11,15 @@ namespace binosplat {
 
 // Walking and turning; teleporting; the panel.
 inline constexpr std::size_t kGestures = 3;
-// A gesture's words beside a small drawing of it, see drawMessage.
+// A gesture's text next to a small drawing of it; see drawMessage.
 TexelPicture drawGesture(std::size_t gesture, const TexelLayout& layout);
 
-// One after the other. That they were shown is kept in the user's folder.
+// Shows them one after another. A file in the user's folder records that they were shown.
 class FirstSteps {
 public:
     static constexpr double kSecondsEach = 7.0;
 
-    // `files` looks whether they were shown before, and notes down that they were; it outlives this.
+    // `files` checks whether they were shown before, and records that they were; it must outlive this.
     FirstSteps(FileWorker& files, FirstStepsShown shown) : files_(files), shown_(shown) {}
     FirstSteps(const FirstSteps&) = delete;
     FirstSteps& operator=(const FirstSteps&) = delete;
@@ -34,8 +34,8 @@ private:
     FileWorker& files_;
     FirstStepsShown shown_;
     bool has_looked_ = false;
-    std::size_t next_ = kGestures;  // until they are known to be wanted
-    double seconds_left_ = 0.0;     // of the one that is shown
+    std::size_t next_ = kGestures;  // until it is known that they are wanted
+    double seconds_left_ = 0.0;     // for the gesture that is shown
 };
 
 }  // namespace binosplat

@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kUnits = 64.0f;  // of a pixel, in both libraries
+constexpr float kUnits = 64.0f;  // per pixel, in both libraries
 constexpr unsigned kDotsPerInch = 72;
 
 // A glyph of a font, and its x, y and advance in units.
@@ -38,7 +38,7 @@ public:
         font_.reset(hb_font_create(tables.get()));
     }
 
-    // In units, for lines as high as from the font's ascent to its descent, as in ImGui; 0: not a font.
+    // In units, for lines that reach from the font's ascent to its descent, as in ImGui; 0: not a font.
     [[nodiscard]] int em(float line_px) const {
         const int line_units = face_ ? face_->ascender - face_->descender : 0;
         return line_units <= 0
@@ -108,7 +108,7 @@ FormedWords formWords(const std::set<std::u32string>& words, std::span<const Loa
     const UniqueOf<FT_LibraryRec_, FT_Done_FreeType> library(begun);
     std::vector<FormingFont> forming;
     for (const LoadedFont& font : fonts) { forming.emplace_back(library.get(), font); }
-    // Fonts with tall letters have high lines, which would make all their letters small: all fonts get the
+    // Fonts with tall letters have tall lines, which would make all their letters small: all fonts get the
     // first one's em.
     const int em = forming.empty() ? 0 : forming.front().em(line_px);
     if (em == 0) { return formed; }

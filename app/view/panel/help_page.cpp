@@ -17,11 +17,11 @@ namespace {
 constexpr float kWhatShare = 0.36f, kDrawnHighPx = 370.0f, kLabelStepPx = 52.0f;
 
 constexpr std::array<std::pair<const char*, const char*>, 5> kDeeds{{
-    {"both grips", "turn the scene, make it larger or smaller"},
+    {"both grips", "turn the scene, enlarge or shrink it"},
     {"grip on the panel", "carry the panel"},
     {"trigger elsewhere", "with Teleport: to a place on the floor"},
     {"bare hands", "pinch: click; fist: hold the scene"},
-    {"pinch, palm to you", "the panel goes, or comes before the eyes"},
+    {"pinch, palm to you", "hide the panel, or bring it before the eyes"},
 }};
 
 // A part of a controller: its place in the drawing of a left one, in radii of its round head from that one's
@@ -39,7 +39,7 @@ std::array<Part, 6> partsOf(const xr::ProfileBindings& held, int hand, bool comp
              {{0.35f, -0.45f}, held.menu[h], "the panel"},
              {{0.45f, 0.15f}, held.play[h], compares ? "held: the other scene" : "pause, or play"},
              {{-0.3f, -0.1f}, held.stick, left ? "walk, or teleport" : "turn, rise, sink"},
-             {{-0.3f, -0.1f}, held.stick_press, left ? "viewpoint before" : "next viewpoint"},
+             {{-0.3f, -0.1f}, held.stick_press, left ? "previous viewpoint" : "next viewpoint"},
              {{-0.55f, 1.5f}, held.squeeze, "hold the scene"}}};
 }
 

@@ -1,4 +1,4 @@
-// A scene is measured: two places, a number on the panel, and its true size.
+// Measures a scene: two places, a number on the panel, and its true size.
 #pragma once
 
 #include "app/view/panel/panel_content.h"
@@ -8,17 +8,17 @@
 
 namespace binosplat {
 
-// Each returns what is said about it.
+// Each returns a message about it.
 std::string openRuler(Ruler& ruler);
-// Somebody has clicked on that place of the scene, or where nothing is; the panel then asks for the distance
-// of two.
+// The user has clicked on that place in the scene, or on nothing; the panel then asks for the distance
+// between two places.
 std::string measureAt(const std::optional<glm::dvec3>& place, Ruler& ruler, double units_per_metre,
                       TextEntry& entry);
 
-// The true metres in a unit, if they were written just now: the scene's from now on.
+// The true number of metres in a unit, if it has just been entered; it is the scene's from now on.
 std::optional<double> takeMeasure(const PanelRequests& requests, const Ruler& ruler, LoadedScene& scene);
 
-// What is saved of a scene.
+// What is saved about a scene.
 ViewSettings savedPlace(const ViewState& state, const LoadedScene& scene);
 
 }  // namespace binosplat

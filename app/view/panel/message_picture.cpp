@@ -1,4 +1,4 @@
-// Letters copied from the font's texture.
+// Copies letters from the font's texture.
 #include "app/view/panel/message_picture.h"
 
 #include "app/view/panel/panel_font.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr float kLineStepPx = 28.0f, kMarginPx = 16.0f, kDrawingPx = 92.0f;
 constexpr double kPlateAlpha = 0.75, kRoundPx = 14.0;
 
-// The coverage of pixels by letters, which lie between those of the texture.
+// How much of a pixel letters cover, for places between the texture's pixels.
 class Letters {
 public:
     Letters() {
@@ -79,7 +79,7 @@ private:
     glm::ivec2 size_px_{0};
 };
 
-// Breaks at blanks; what does not fit into two lines is left out.
+// Breaks lines at blanks; what does not fit into two lines is dropped.
 std::vector<std::string> linesOf(const std::string& shown, float width_px) {
     const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
     std::vector<std::string> lines;
@@ -91,7 +91,7 @@ std::vector<std::string> linesOf(const std::string& shown, float width_px) {
     return lines;
 }
 
-// How much of a plate with round corners covers a place, relative to its middle.
+// How much a plate with round corners covers a place, given relative to the plate's middle.
 double plateAt(const glm::dvec2& place, const glm::dvec2& half) {
     const glm::dvec2 beyond = glm::max(glm::abs(place) - half + kRoundPx, glm::dvec2(0.0));
     return std::clamp(kRoundPx + 0.5 - glm::length(beyond), 0.0, 1.0);

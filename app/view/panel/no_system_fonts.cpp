@@ -1,4 +1,4 @@
-// For systems that do not tell which fonts have which letters, and without shaping of words.
+// For systems that do not say which fonts have which letters; words are not shaped.
 #include "app/view/panel/formed_words.h"
 
 namespace binosplat {

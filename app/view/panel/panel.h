@@ -1,4 +1,4 @@
-// The panel, frame by frame: its content, who points at it, and where it is drawn: in the headset, in the
+// The panel, frame by frame: its content, what points at it, and where it is drawn: in the headset, in the
 // window, or in both.
 #pragma once
 
@@ -15,9 +15,9 @@ public:
 
     // The panel as a thing in the room.
     [[nodiscard]] PanelInRoom& inRoom() { return in_room_; }
-    // Lays out the widgets, for the hand that points or for `mouse`; `uses_mouse`: it did something there. If
-    // they have changed, acquires an image of `hung`, the headset in whose room the panel hangs; null: it
-    // does not hang.
+    // Lays out the widgets, for the hand that points or for `mouse`; `uses_mouse`: the mouse did something
+    // there. If they have changed, acquires an image of `hung`, the headset in whose room the panel hangs;
+    // null: it does not hang in a room.
     PanelRequests layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse,
                          const ViewSettings& settings, double step_seconds);
     // Draws the widgets on that image. The canvas is also drawn if it is to be `copied` to a window.

@@ -16,7 +16,7 @@ namespace binosplat {
 
 namespace {
 
-// Shares of the width; Quit is on the right, away from what is pressed often.
+// Shares of the width; Quit is on the right, away from buttons that are pressed often.
 constexpr float kTabsShare = 0.64f, kMoreTabsShare = 0.78f;
 
 // Chooses the page; the list of scenes is refreshed when its page is opened.

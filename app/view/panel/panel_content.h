@@ -1,5 +1,5 @@
-// The panel's widgets: where the wearer stands and how it looks, which scenes there are, and how the pictures
-// are made.
+// The panel's widgets: where the wearer stands and how things look, which scenes there are, and how the
+// pictures are made.
 #pragma once
 
 #include "app/view/panel/panel_font.h"
@@ -37,10 +37,10 @@ struct ShownRate {
     // Frames that the wearer got in the last second, and displays; 0: not known yet.
     double met_hz = 0.0, display_hz = 0.0;
     int late = 0;                    // of these frames
-    double resolution = 1.0;         // each way, relative to the headset's recommendation
-    std::optional<double> budget;    // the most that is rendered again, if the method has a budget
+    double resolution = 1.0;         // in each direction, relative to the headset's recommendation
+    std::optional<double> budget;    // the most that is rendered, if the method has a budget
     std::optional<double> bound_db;  // in place of it: the errors that are left
-    bool is_beaten = false;          // the rate cannot be held even with the least settings
+    bool is_beaten = false;          // the rate cannot be held even with the lowest settings
 };
 
 // The time of a scene that moves.
@@ -60,10 +60,10 @@ struct ShownWindow {
 // The panel's content.
 struct PanelStatus {
     std::string scene;
-    bool compares = false;  // there is another one, to compare with
-    // The next one that is chosen is to be compared with it.
+    bool compares = false;  // there is another scene to compare with
+    // The next scene that is chosen will be compared with it.
     bool compares_next = false;
-    // The other one stays in sight, without a button held.
+    // The other scene stays in sight without a button being held.
     bool shows_other = false;
     // Why the headset shows nothing; empty: it shows something.
     std::string state;
@@ -72,10 +72,10 @@ struct PanelStatus {
     const FrameResult* frame = nullptr;  // the last one; null before the first
     // wall-clock time from frame to frame, oldest first
     std::vector<float> frame_ms;
-    // What the governor does about the frame rate, and why.
+    // What the governor is doing about the frame rate, and why.
     std::string governor;
     std::string message;                               // the outcome of the last button
-    std::string files;                                 // the file task beside the frames; empty: none
+    std::string files;                                 // the file task in the background; empty: none
     bool can_reload_shaders = false;                   // there is a button for it
     bool takes_depth = false;                          // there is a box for it
     bool can_pass_through = false;                     // there is a box for it
@@ -92,7 +92,7 @@ struct PanelStatus {
     std::string viewpoint;                    // name of the one gone to last
     bool tours = false;                       // through them
     const PicturePlaces* pictures = nullptr;  // of scenes, in the font's texture; null: none
-    TextEntry* entry = nullptr;               // what is written on the panel; null: nothing ever
+    TextEntry* entry = nullptr;               // what is typed on the panel; null: typing is not possible
 };
 
 // What the wearer asked for.
@@ -112,23 +112,23 @@ struct PanelRequests {
     std::optional<std::size_t> frame;  // to go to
     std::string chosen_scene;          // empty: none
     std::string favourite;             // a scene to mark as favourite, or to unmark; empty: none
-    // What was written.
+    // The text that was entered.
     std::optional<std::pair<TextEntry::What, std::string>> entered;
     WidgetPlaces places;    // of what was drawn
     ViewSettings settings;  // as they should be from now on
 };
 
-// All names and messages on the canvas, a line each; see PanelFont::want.
+// All names and messages on the canvas, one per line; see PanelFont::want.
 std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, const PanelStatus& status);
 // All pictures on it.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);
 
-// Does what was asked for with viewpoints, apart from going to one and keeping one. A new name is asked for
-// by `entry`.
+// Does what was requested with viewpoints, apart from going to one and keeping one. `entry` asks for a new
+// name.
 void followViewpoints(const PanelRequests& requests, TextEntry& entry, ViewpointList& viewpoints);
 
 // Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as
-// the wearer does.
+// the wearer asks.
 PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser,
                         const PanelStatus& status);
 

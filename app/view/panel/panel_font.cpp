@@ -53,7 +53,7 @@ std::string readFont(const fs::path& file, std::string& complaint) {
         if (looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()})) {
             return bytes;
         }
-        complaint = fmt::format("{}: is no whole TrueType font", file.string());
+        complaint = fmt::format("{}: is not a whole TrueType font", file.string());
     } catch (const Error& error) { complaint = error.what(); }
     return {};
 }

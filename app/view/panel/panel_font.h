@@ -25,31 +25,31 @@ inline constexpr float kFontPx = 24.0f;
 // Candidate font files, the best first: only BINOSPLAT_FONT if it is set, otherwise the system's fonts.
 std::vector<std::filesystem::path> fontFiles();
 
-// True if the tables that a TrueType or OpenType font lists, including all needed ones, lie within these
-// bytes; for a collection, its first font.
+// True if the tables listed by a TrueType or OpenType font include all that are needed and lie within these
+// bytes; for a collection, this is about its first font.
 bool looksLikeFont(std::span<const unsigned char> bytes);
 
-// Where a picture lies in the font's texture.
+// Where a picture is in the font's texture.
 struct PictureCorners {
     ImVec2 low, high;
 };
 using PicturePlaces = std::map<std::string, PictureCorners>;  // by ScenePicture::key
 
 // The font of the current ImGui context, with the letters that are shown: Latin, Greek and Cyrillic from the
-// start, others as names need them, boxes for letters that no font has; and the context's UserData, see
-// asShown. want() and take() are for the drawing thread, build() for any thread.
+// start, others as names need them, boxes for letters that none of the fonts has. It also sets the context's
+// UserData; see asShown. want() and take() are for the drawing thread, build() for any thread.
 class PanelFont {
 public:
-    // Before the font is made a texture. If there is no vector font, ImGui's own small one is used.
+    // Before the font is made into a texture. If there is no vector font, ImGui's own small one is used.
     PanelFont();
     // Empty, or why ImGui's own font is used: one line.
     [[nodiscard]] const std::string& complaint() const { return complaint_; }
-    // Between two frames. True: the text (UTF-8, in reading order) has new letters or words, or there are new
-    // pictures; then call build() once. Nothing more is wanted until take().
+    // Between two frames. Returns true if the text (UTF-8, in reading order) has new letters or words, or if
+    // there are new pictures; then call build() once. Nothing more is accepted until take().
     [[nodiscard]] bool want(std::string_view text, const std::vector<ScenePicture>& pictures = {});
-    // Makes a font of all that was wanted, reading font files for further letters.
+    // Makes a font with everything that was wanted, reading font files for further letters.
     void build();
-    // After build(), between two frames: switches to the new font, which must then be made a texture.
+    // After build(), between two frames: switches to the new font, which must then be made into a texture.
     void take();
 
     // The pictures of the current font.
@@ -59,7 +59,7 @@ private:
     // The chosen one first, then the system's once it lacks a letter; none: ImGui's own.
     std::vector<LoadedFont> fonts_;
     std::string complaint_;
-    std::set<ImWchar> added_;  // beyond the initial ones, whether a font has them or not
+    std::set<ImWchar> added_;  // in addition to the initial ones, whether or not a font has them
     std::set<std::u32string> words_;
     std::map<std::string, ScenePicture> pictures_;
     UniqueOf<ImFontAtlas, IM_DELETE<ImFontAtlas>> built_;

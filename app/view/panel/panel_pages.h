@@ -5,7 +5,7 @@
 
 namespace binosplat {
 
-// Of a line, for pictures and files; what pictures show is beside them.
+// Share of a line for pictures and files; next to pictures it says what they show.
 inline constexpr float kKeptShare = 0.74f;
 
 // For wearers: sharpness and smoothness, place, size of the scene, and ways to move.
@@ -30,7 +30,7 @@ void drawHelpPage(PanelWidgets& widgets, const PanelStatus& status, PanelRequest
 // In place of any page.
 void drawTextEntry(PanelWidgets& widgets, TextEntry& entry, PanelRequests& requests);
 
-// Outcomes and work in progress, below all buttons since it may take several lines.
+// Outcomes and work in progress, below all buttons, since this may take several lines.
 void drawSaid(const PanelStatus& status);
 
 }  // namespace binosplat

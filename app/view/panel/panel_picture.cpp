@@ -8,7 +8,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t kPlottedFrames = 120;
-// How long a frame's times are shown. The panel is drawn only when it changes.
+// How long a frame's times are shown: the panel is drawn only when it changes.
 constexpr double kTimesSeconds = 0.25;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The panel as a picture: its content, drawn on a canvas for whoever points at it.
+// The panel as a picture: its content, drawn on a canvas and operated by whatever points at it.
 #pragma once
 
 #include "app/view/files/file_worker.h"
@@ -15,25 +15,25 @@ public:
     PanelPicture(const Context& context, vk::Format format);
 
     [[nodiscard]] Canvas& canvas() { return canvas_; }
-    // Its content for the next layout; times and the governor's sentence are filled in by showTimes().
+    // The content for the next layout; showTimes() fills in times and the governor's sentence.
     [[nodiscard]] PanelStatus& status() { return status_; }
 
-    // What is written on it.
+    // The text that is being typed on it.
     [[nodiscard]] TextEntry& entry() { return entry_; }
     [[nodiscard]] const TextEntry& entry() const { return entry_; }
 
-    // A frame was drawn just now.
+    // Call when a frame has just been drawn.
     void keepFrameTime();
     // Shows the last frame's times, updated only now and then, since numbers that change with every frame
     // cannot be read.
     void showTimes(const FrameResult& last, const std::string& governor, double step_seconds);
-    // Has letters, pictures and the current list of scenes read from files beside the frames.
+    // Has letters, pictures and the current list of scenes read from files alongside the frames.
     void askFor(FileWorker& files, const ViewSettings& settings);
     // Facts about the listed scenes have changed.
     void listAnew() { chooser_.refresh(status_.scene); }
     // Lays out the widgets.
     PanelRequests layOut(const PanelPointer& pointer, const ViewSettings& settings, double step_seconds);
-    // Draws them, if they have changed.
+    // Draws the widgets, if they have changed.
     void record(Commands& commands);
 
 private:

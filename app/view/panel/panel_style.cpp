@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-// Grey at rest, brighter when pointed at, yellow while pressed, blue if chosen: seen without reading.
+// Grey at rest, brighter when pointed at, yellow while pressed, blue if chosen: told apart at a glance.
 const ImVec4 kRests{0.20f, 0.23f, 0.28f, 1.0f}, kHovered{0.38f, 0.45f, 0.56f, 1.0f},
     kPressed{0.80f, 0.55f, 0.10f, 1.0f}, kChosen{0.13f, 0.42f, 0.75f, 1.0f},
     kChosenHovered{0.25f, 0.56f, 0.92f, 1.0f};
@@ -19,7 +19,7 @@ const ImVec4 kRests{0.20f, 0.23f, 0.28f, 1.0f}, kHovered{0.38f, 0.45f, 0.56f, 1.
 void stylePanel() {
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
-    style.ScaleAllSizes(1.6f);  // a ray points less finely than a mouse
+    style.ScaleAllSizes(1.6f);  // a ray points less precisely than a mouse
     style.FramePadding.y = 0.5f * (kTargetPx - kFontPx);
     style.ItemSpacing.y = 8.0f;
     style.WindowRounding = 0.0f;

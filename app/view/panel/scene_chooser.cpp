@@ -1,4 +1,4 @@
-// From folder to folder.
+// Moves from folder to folder.
 #include "app/view/panel/scene_chooser.h"
 
 #include "app/view/scenes/recent_scenes.h"

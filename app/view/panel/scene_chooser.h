@@ -1,5 +1,5 @@
-// Looking for a scene on the panel: the open folder, and the part of it that is shown. It reads no folders
-// itself, see takeWish().
+// Chooses a scene on the panel: the open folder, and the part of it that is shown. It does not read folders
+// itself; see takeWish().
 #pragma once
 
 #include "app/view/scenes/scene_list.h"
@@ -32,16 +32,16 @@ public:
     void showFolder(const std::string& folder);
     void showRecent() { showAnother(true, "Favourites and recent scenes"); }
     void goUp();
-    // Opens what it opened last again; the first time, the folder of `scene`.
+    // Reopens what was opened last; the first time, the folder of `scene`.
     void refresh(const std::string& scene);
     // True if nothing has been opened yet.
     [[nodiscard]] bool isNew() const { return !wish_.recent && wish_.folder.empty(); }
-    // Turns `pages` pages of kRows entries on or, below 0, back.
+    // Turns `pages` pages of kRows entries forwards or, below 0, back.
     void turn(int pages);
     // Opens an entry that is a folder; returns the place of a scene to load, otherwise empty.
     [[nodiscard]] std::string open(const SceneEntry& entry);
 
-    // The list that it wants, once; answer with show().
+    // The list that it needs, returned once; answer with show().
     [[nodiscard]] std::optional<SceneListWish> takeWish();
     void show(SceneList list, const SceneListWish& wish);
     // True until the list is loaded.

@@ -13,7 +13,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kScenesShare = 0.68f;  // of a row, before the buttons of a comparison
+constexpr float kScenesShare = 0.68f;  // of a row, to the left of the comparison buttons
 constexpr float kRowPx = 66.0f, kStarPx = 60.0f;
 
 void drawPlaces(PanelWidgets& widgets, SceneChooser& chooser) {
@@ -52,7 +52,7 @@ void drawPicture(const SceneEntry& entry, const ImVec2& low, const PicturePlaces
 
 void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places,
                  PanelRequests& requests) {
-    // Always room for kRows entries, so that the widgets below stay in place.
+    // There is always space for kRows entries, so that the widgets below stay in place.
     const float rows = static_cast<float>(SceneChooser::kRows) * (kRowPx + ImGui::GetStyle().ItemSpacing.y);
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows + ImGui::GetTextLineHeightWithSpacing()));
     writeLine(endOf(asShown(chooser.list().title)));
@@ -81,7 +81,7 @@ void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlac
     ImGui::EndChild();
 }
 
-// Two buttons, at the end of a row: which may stand out at once.
+// Two buttons at the end of a row; both may be highlighted at once.
 void drawComparison(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests) {
     const float gap = 0.5f * ImGui::GetStyle().ItemSpacing.x;
     const float width = 0.5f * (ImGui::GetContentRegionAvail().x - gap);

@@ -1,4 +1,4 @@
-// Uses fontconfig.
+// Finds the system's fonts with fontconfig.
 #include "app/view/panel/system_fonts.h"
 
 #include "app/view/panel/unique_of.h"

@@ -1,4 +1,4 @@
-// A line of text, and keys below it.
+// A line of text with keys below it.
 #include "app/view/panel/text_entry.h"
 
 #include "app/view/panel/panel_pages.h"

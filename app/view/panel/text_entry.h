@@ -1,5 +1,4 @@
-// Something that people write on the panel: with its keys, at which a ray or a mouse points, or with a
-// keyboard.
+// Text that is typed on the panel: with its keys, at which a ray or a mouse points, or with a keyboard.
 #pragma once
 
 #include <string>
@@ -19,7 +18,7 @@ public:
     [[nodiscard]] const std::string& title() const { return title_; }
     [[nodiscard]] const std::string& text() const { return text_; }
 
-    // A letter in UTF-8, if there is room; the last one goes; and what Return does.
+    // Adds a letter in UTF-8, if there is space; removes the last one; does what Return does.
     void type(const std::string& letter);
     void eraseLast();
     void confirm() { is_confirmed_ = true; }

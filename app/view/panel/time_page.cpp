@@ -1,4 +1,4 @@
-// The page of a scene that moves.
+// The panel's page for a scene that moves.
 #include "app/view/panel/panel_pages.h"
 #include "app/view/panel/panel_style.h"
 

@@ -1,4 +1,4 @@
-// Placing the scene around the wearer.
+// Places the scene around the wearer.
 #include "app/view/placement/placement.h"
 
 #include <algorithm>
@@ -9,21 +9,21 @@ namespace binosplat {
 namespace {
 
 const glm::dvec3 kDown(0.0, 1.0, 0.0);
-// Hands closer together than this tell nothing about size; if their horizontal distance is less, nothing
-// about direction.
+// Hands closer together than this say nothing about size; if their horizontal distance is less, they say
+// nothing about direction.
 constexpr double kLeastSpanMetres = 0.02;
 constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 
-// About the vertical; a positive turn is to the right.
+// About the vertical axis; a positive turn is to the right.
 glm::dquat turnAboutDown(double angle_rad) { return glm::angleAxis(angle_rad, kDown); }
 
-// `turn` and `growth` take the new room to the old one; `about` stays in place.
+// `turn` and `growth` map the new room to the old one; `about` stays in place.
 Similarity turnedAndGrown(const Similarity& scene_from_room, const glm::dquat& turn, double growth,
                           const glm::dvec3& about) {
     return compose(scene_from_room, {turn, about - growth * (turn * about), growth});
 }
 
-// The shortest turn that brings `from` to the direction of `to`.
+// The shortest turn that brings `from` into the direction of `to`.
 glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to);
     const double cosine = glm::dot(a, b);

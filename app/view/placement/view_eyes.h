@@ -8,7 +8,8 @@
 
 namespace binosplat {
 
-// Makes angles up and down equal if they differ only by rounding, so that the rows of parallel eyes coincide.
+// Makes both eyes' angles up and down equal if they differ only by rounding, so that the rows of parallel
+// eyes coincide.
 std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views);
 
 // Both eyes in room axes. Removes float32 noise from parallel, side-by-side eyes, so that they are exactly
@@ -18,10 +19,10 @@ std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);
 // The midpoint between the eyes.
 Pose roomFromHead(const std::array<Pose, 2>& room_from_eyes);
 
-// An eye as frames take it.
+// An eye in the form that frames need.
 Eye eyeInScene(const Similarity& scene_from_room, const Pose& room_from_eye, const XrFovf& fov,
                glm::uvec2 size_px);
-// What a frame's picture is of, as the runtime is told: seen from `place` in the room.
+// What a frame's picture shows, as the runtime is told: the view from `place` in the room.
 xr::EyeView pictureInRoom(const Similarity& scene_from_room, const Eye& picture, const XrVector3f& place);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Bends in flat pictures.
+// Draws the bent arc into flat pictures.
 #include "app/view/room/arc_picture.h"
 
 #include <algorithm>
@@ -10,9 +10,10 @@ namespace binosplat {
 namespace {
 
 constexpr double kHalfWidthMetres = 0.006;
-constexpr double kMostGrowth = 2.0;  // of what lies before its picture, for an eye that is close to its plane
+constexpr double kMostGrowth =
+    2.0;  // of what is in front of its picture, for an eye that is close to its plane
 
-// Where the eye sees the points in the picture's plane, metres from its middle.
+// Where the eye sees the points in the picture's plane, in metres from its middle.
 std::vector<glm::dvec2> seenIn(const Strip& place, std::span<const glm::dvec3> points,
                                const glm::dvec3& eye) {
     const Pose picture_from_room = inverse(place.room_from_strip);
@@ -55,7 +56,7 @@ ArcPicture drawArc(const Arc& arc, const glm::dvec3& eye, const TexelLayout& lay
         const std::vector<glm::dvec2> line = seenIn(*place, points, eye);
         glm::dvec2 half(0.0);
         for (const glm::dvec2& at : line) { half = glm::max(half, glm::abs(at)); }
-        // Nothing but transparent texels lies at the border, where filters read beyond it.
+        // The border has only transparent texels, since filters read beyond it.
         place->size_m =
             2.0 * (half + kHalfWidthMetres) * glm::dvec2(kArcPiecePx) / (glm::dvec2(kArcPiecePx) - 4.0);
         const glm::dvec2 texel_m = place->size_m / glm::dvec2(kArcPiecePx);

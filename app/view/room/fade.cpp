@@ -1,4 +1,4 @@
-// What is a jump, and how the view comes back.
+// Recognizes jumps, and fades the view back in.
 #include "app/view/room/fade.h"
 
 #include <algorithm>
@@ -9,8 +9,8 @@ namespace binosplat {
 namespace {
 
 constexpr double kSeconds = 0.3;
-// A stick walks 15 cm at most from frame to frame, and turns by 30 degrees, which the wearer asks for again
-// and again.
+// A stick moves the wearer by at most 15 cm from frame to frame, or turns by 30 degrees, which wearers do
+// again and again.
 constexpr double kJumpMetres = 0.3, kJumpRadians = 0.6, kJumpGrowth = 1.3;
 
 bool isJump(const Similarity& from, const Similarity& to, const Pose& room_from_head) {

@@ -1,4 +1,4 @@
-// Bones with round ends, seen by one eye.
+// Draws a hand's bones with round ends, as seen by one eye.
 #include "app/view/room/hand_picture.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPictureMetres = 0.3;  // fits a spread hand with its wrist
 constexpr glm::dvec3 kSkinLight(0.3, 0.42, 0.55);
-constexpr double kLeastRadiusMetres = 0.004;  // if the runtime does not tell
+constexpr double kLeastRadiusMetres = 0.004;  // if the runtime does not say
 constexpr double kRimTexels = 1.2;            // width over which a border fades
 
 constexpr std::size_t kWrist = XR_HAND_JOINT_WRIST_EXT;
@@ -26,7 +26,7 @@ constexpr std::array<std::size_t, 6> kFirstJoints{XR_HAND_JOINT_PALM_EXT,
 // A joint as the picture shows it, in texels.
 struct SeenJoint {
     glm::dvec2 at;
-    double radius, depth;  // the depth counts texels, too
+    double radius, depth;  // the depth is in texels, too
 };
 
 struct Hit {

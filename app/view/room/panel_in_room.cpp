@@ -1,4 +1,4 @@
-// Rays against the panel.
+// Intersects rays with the panel.
 #include "app/view/room/panel_in_room.h"
 
 #include "app/view/placement/placement.h"
@@ -15,7 +15,7 @@ constexpr double kRingShare = 0.025;  // of its distance: a degree and a half
 // In front of the eyes: 27 degrees to the left, a little below, within arm's reach.
 const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
 const glm::dvec3 kUp(0.0, -1.0, 0.0);
-// It hangs 27 degrees to the left: a wearer who looks far to the right looks past it, one who has turned
+// It hangs 27 degrees to the left: a wearer who looks far to the right is looking past it, one who has turned
 // round has lost it.
 constexpr double kUnseenRadians = 1.4, kFarMetres = 3.0, kUnseenSeconds = 1.5;
 

@@ -17,11 +17,12 @@ public:
     // A canvas of `size_px`, `width_m` wide.
     PanelInRoom(glm::uvec2 size_px, double width_m);
 
-    // Follows the hands while the panel is `shown`. Both may point; the one that clicked last is the pointer,
-    // as long as it hits the panel. A hand that squeezes while it points carries the panel until it lets go.
+    // Follows the hands while the panel is `shown`. Both may point; the one that clicked last is the pointer
+    // for as long as it hits the panel. A hand that squeezes while it points carries the panel until it lets
+    // go.
     void update(const std::array<xr::Hand, 2>& hands, bool shown);
-    // While it is shown: if the wearer looks elsewhere for long enough, and neither points at it nor carries
-    // it, it moves to in front of the eyes.
+    // While the panel is shown: if the wearer looks elsewhere for long enough, and neither points at the
+    // panel nor carries it, it moves back in front of the eyes.
     void comeBefore(const Pose& room_from_head, double step_seconds);
     // Hangs the panel in front of the eyes, a little to the left, facing them.
     void hangBefore(const Pose& room_from_head);
@@ -39,7 +40,7 @@ public:
     [[nodiscard]] bool isCarriedBy(int hand) const { return carrier_ == hand; }
 
     // The rays of all pointing hands except `without`, while the panel is shown or the trigger is pulled: up
-    // to the panel or, if they miss it, a short way, fading; a ring shows where they meet the scene, this
+    // to the panel or, if they miss it, a short way, fading out; a ring shows where they hit the scene, this
     // many metres away.
     [[nodiscard]] std::vector<Thing> rays(const glm::dvec3& eye, std::optional<int> without,
                                           const std::array<std::optional<double>, 2>& meets_m = {}) const;

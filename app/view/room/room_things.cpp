@@ -17,7 +17,8 @@ const glm::dvec3 kMessagePlace(0.0, 0.28, 1.0);
 constexpr double kMessageMetres = 0.8;
 constexpr std::size_t kTexelsOfUpdate = 16384;  // that fit into one update of a command buffer
 // What goes on without, if the runtime fails.
-constexpr const char *kHands = "pictures of hands", *kArcs = "arcs", *kMessages = "messages before the eyes";
+constexpr const char *kHands = "pictures of hands", *kArcs = "arcs",
+                     *kMessages = "messages in front of the eyes";
 
 }  // namespace
 

@@ -16,15 +16,15 @@ struct RoomSight {
     glm::dvec3 eye{0.0};                           // the midpoint between the wearer's eyes
     std::optional<std::array<xr::Hand, 2>> hands;  // absent: not to be drawn
     std::vector<Thing> things;                     // rays and others
-    const Arc* arc = nullptr;                      // of a throw; null: none
+    const Arc* arc = nullptr;                      // of a teleport; null: none
     std::optional<double> vignette_m;              // its width
-    // A line of text in front of the head: drawn anew if there is a picture, otherwise as it was.
+    // A line of text in front of the head: redrawn if there is a picture, otherwise as it was.
     bool has_message = false;
     std::optional<TexelPicture> message;
 };
 
-// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a
-// ray, the arc's pieces and its end, a message.
+// Together they fit into the 16 layers that every runtime accepts: the vignette, two parts of each
+// controller, a ray, the arc's pieces and its end, a message.
 class RoomThings {
 public:
     // For the session's lifetime, with images of `format`. Things whose images the runtime cannot make are
@@ -33,18 +33,18 @@ public:
 
     // Before anything is recorded: acquires the images that this frame needs.
     void choose(const RoomSight& sight);
-    // After choose(): in place of a vignette, the whole view is dark; 0: it is not. `width_m`: see
+    // After choose(): darkens the whole view, in place of a vignette; 0: not at all. `width_m`: see
     // coverMetres().
     void darken(double darkness, double width_m);
     // Between begin and submitAndWait.
     void record(Commands& commands);
     // After submitAndWait: releases what choose() acquired.
     void release();
-    // Of pictures for it.
+    // The layout for pictures of it.
     [[nodiscard]] const TexelLayout& layout() const { return layout_; }
     // True if that frame has any things.
     [[nodiscard]] bool areShown() const { return vignette_.has_value() || !quads_.empty(); }
-    // The runtime does not show them: from now on nothing is drawn.
+    // For a runtime that does not show them: from now on nothing is drawn.
     void giveUp();
     // Add the layers of the last chosen frame: those behind the panel, and those in front of it.
     void addBehindPanel(xr::Layers& layers) const;

@@ -1,4 +1,4 @@
-// Copying a few pixels of a frame, and reading them later.
+// Copies a few pixels of a frame, and reads them later.
 #include "app/view/room/scene_probe.h"
 
 #include <glm/gtc/packing.hpp>
@@ -14,9 +14,9 @@ namespace {
 
 // From the hand to the end of a large room.
 constexpr double kNearestMetres = 0.2, kFarthestMetres = 30.0;
-// Of a point: a colour of up to four floats, then a word or a float of depth.
+// For each point: a colour of up to four floats, then a word or a float of depth.
 constexpr std::uint64_t kPointBytes = 32, kDepthByte = 16;
-// What is this far behind a surface may pass behind it; what is nearer meets it.
+// What is this far behind a surface may pass behind it; anything nearer hits it.
 constexpr double kThickMetres = 0.25, kThickShare = 0.15;
 
 }  // namespace
@@ -77,7 +77,7 @@ ProbesSeen SceneProbe::ask(const std::array<std::optional<ProbePath>, kProbePath
     turn_ = (turn_ + 1) % asked_.size();
     asked_[turn_].paths = paths;
     asked_[turn_].is_recorded = false;
-    // A frame waits for the one before the last.
+    // A frame waits for the frame before the previous one.
     const Asked& done = asked_[(turn_ + 1) % asked_.size()];
     ProbesSeen seen;
     for (std::size_t p = 0; p < kProbePaths && done.is_recorded; ++p) {

@@ -20,10 +20,10 @@ using ProbePath = std::array<glm::dvec3, kProbePoints>;  // in the room, from a 
 
 // Of a path, as an eye sees it.
 struct PathSeen {
-    // The point at which it first meets something, between points as a fraction; empty: none, or none that is
-    // seen.
+    // The point at which the path first hits something, with a fraction between points; empty: none, or none
+    // that is seen.
     std::optional<double> meets;
-    bool is_hidden = false;  // some of it lies far behind something
+    bool is_hidden = false;  // part of it is far behind something
 };
 
 struct ProbesSeen {
@@ -36,10 +36,11 @@ ProbePath probeRay(const Pose& room_from_aim);
 // How far along that ray a point is, which may be a fraction.
 double probeMetres(double point);
 
-// The point at a share of the way, of points along it.
+// The point at a share of the way along these points.
 glm::dvec3 pointAlong(std::span<const glm::dvec3> way, double share);
 
-// From the points' own depths and those of what is seen there, in metres; empty: nothing, or out of sight.
+// From the depths of the points and of what is seen there, in metres; empty: nothing is there, or it is out
+// of sight.
 PathSeen followPath(const std::array<std::optional<double>, kProbePoints>& points_m,
                     const std::array<std::optional<double>, kProbePoints>& seen_m);
 
@@ -47,12 +48,13 @@ class SceneProbe {
 public:
     explicit SceneProbe(const Context& context);
 
-    // Once a frame, before it is recorded: the paths in it, and what is known of those of three frames ago.
+    // Once per frame, before it is recorded: takes this frame's paths, and returns what is known about those
+    // of three frames ago.
     ProbesSeen ask(const std::array<std::optional<ProbePath>, kProbePaths>& paths);
-    // Another scene is shown: what was asked before is of no use.
+    // Another scene is shown: earlier questions no longer matter.
     void forget();
-    // Within the frame's commands, after its pictures; may be repeated. The scene is `scene_from_room`, the
-    // picture that of `eye`. Pictures without depth tell nothing.
+    // Within the frame's commands, after its pictures; may be repeated. `scene_from_room` places the scene,
+    // and the picture is that of `eye`. Pictures without depth give no answers.
     void record(Commands& commands, const Picture& picture, const Eye& eye,
                 const Similarity& scene_from_room);
 

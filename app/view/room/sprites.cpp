@@ -1,4 +1,4 @@
-// Drawing small pictures, texel by texel.
+// Draws small pictures, texel by texel.
 #include "app/view/room/sprites.h"
 
 #include "app/view/room/vignette.h"
@@ -37,7 +37,7 @@ Texel roundThing(const glm::dvec3& light, double aside) {
     return {light * (0.35 + 0.65 * facing_eye), 1.0 - rise(0.9, 1.0, aside)};
 }
 
-// `at` is -1 to 1 each way, from the left and from the top.
+// `at` is -1 to 1 in each direction, from the left and from the top.
 Texel draw(Sprite sprite, const glm::dvec2& at) {
     const double radius = glm::length(at);
     switch (sprite) {
@@ -118,7 +118,7 @@ const char* nameOf(Sprite sprite) {
 SpritePlace placeOfShade(double darkness) {
     const auto shade =
         static_cast<unsigned>(std::clamp(std::ceil(kShades * darkness), 1.0, double{kShades})) - 1;
-    // Its middle: beside it lies another one.
+    // Only its middle, since another one is next to it.
     return {placeOf(Sprite::kShade).from_px + glm::uvec2(shade * kShadePx + 2, 2), glm::uvec2(kShadePx - 4)};
 }
 

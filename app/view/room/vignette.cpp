@@ -1,4 +1,4 @@
-// How far the vignette is closed.
+// Computes how far the vignette is closed.
 #include "app/view/room/vignette.h"
 
 #include "app/view/placement/view_eyes.h"
@@ -12,7 +12,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kClosesInSeconds = 0.15, kOpensInSeconds = 0.3;
-constexpr double kMargin = 1.05;          // for eyes beside the head's middle
+constexpr double kMargin = 1.05;          // for eyes to the side of the head's middle
 constexpr double kLeastCosine = 0.1;      // for canted eyes, whose corners may look past the head's side
 constexpr double kCorner = 1.4142135624;  // of a square, relative to its half width
 

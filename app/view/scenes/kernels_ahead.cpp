@@ -1,4 +1,4 @@
-// Small frames that are never drawn.
+// Makes kernels with small frames that are never drawn.
 #include "app/view/scenes/kernels_ahead.h"
 
 #include "app/options/modes.h"
@@ -12,7 +12,7 @@ namespace binosplat {
 
 namespace {
 
-// The governor's shares of the resolution, each way; if axes stay, pictures are wider.
+// The governor's shares of the resolution, in each direction; if axes stay, pictures are wider.
 constexpr std::array kShares{1.25, 1.0, 0.8, 0.6, 0.4};
 
 std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
@@ -26,7 +26,7 @@ std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     return eyes;
 }
 
-// One of the widths with the same steps is enough, see resample.
+// One of the widths with the same steps is enough; see resample.
 std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     std::vector<std::uint32_t> widths, steps;
     for (const double share : kShares) {
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     return widths;
 }
 
-// A method in all its variants, for eyes like these.
+// Makes the kernels of a method in all its variants, for eyes like these.
 void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<const Eye> eyes) {
     const auto seen = settings.mode == Mode::kMono ? eyes.first(1) : eyes;
     small.makeKernels(seen, settings);

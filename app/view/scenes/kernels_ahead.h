@@ -25,8 +25,8 @@ struct FramesAhead {
     [[nodiscard]] bool isLike(const FramesAhead& other) const;
 };
 
-// A frame of `scene` that is never drawn and has the kernels for whatever may come without a click, for
-// StereoFrame::takeKernels: those of the chosen method, with and without hidden tiles and foveation, with
+// A frame of `scene` that is never drawn and has the kernels for everything that may happen without a click,
+// for StereoFrame::takeKernels: those of the chosen method, with and without hidden tiles and foveation, with
 // parallel and canted eyes. Takes as long as the driver needs; `between` is called now and then and may
 // throw.
 std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene,
@@ -36,11 +36,11 @@ std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuS
 // The same on a thread of its own, for a scene that is shown.
 class KernelMaker {
 public:
-    // `scene` outlives this.
+    // `scene` must outlive this.
     KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead);
     KernelMaker(const KernelMaker&) = delete;
     KernelMaker& operator=(const KernelMaker&) = delete;
-    // Gives up if it can, and waits for the rest.
+    // Cancels what it can, and waits for the rest.
     ~KernelMaker();
 
     void cancel() { cancelled_ = true; }

@@ -1,4 +1,4 @@
-// Names in the order that people put them: room2 before room10, whatever their capitals.
+// Orders names as people would: room2 before room10, ignoring case.
 #pragma once
 
 #include <string_view>

@@ -12,18 +12,18 @@ namespace binosplat {
 
 class PictureCopy {
 public:
-    // Takes its memory.
+    // Allocates its memory.
     explicit PictureCopy(const Context& context);
 
-    // Once before each frame, from the first one that is to be copied on. True, once, when the copy has
-    // arrived or that frame was not drawn: then the next call begins anew.
+    // Call once before each frame, beginning with the first one that is to be copied. True, once, when the
+    // copy has arrived or that frame was not drawn: then the next call begins anew.
     [[nodiscard]] bool ask();
     // Within that frame's commands, after its pictures; may be repeated. `picture` is that of `eye`, of which
     // `view` sees a part.
     void record(Commands& commands, const Picture& picture, const Eye& eye, const Eye& view);
-    // Nobody wants it any more: the next call of ask() begins anew.
+    // It is no longer wanted: the next call of ask() begins anew.
     void drop() { frames_ = 0; }
-    // What the view saw, to be made of the copy on any thread; null if there is none.
+    // What the view saw, to be made from the copy on any thread; null if there is none.
     [[nodiscard]] std::function<Image()> take();
 
 private:

@@ -1,4 +1,4 @@
-// A text file with a path in each line.
+// Keeps the lists in text files with a path on each line.
 #include "app/view/scenes/recent_scenes.h"
 
 #include "app/view/settings/view_files.h"
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char *kRecentName = "recent-scenes.txt", *kFavouritesName = "favourite-scenes.txt";
 constexpr std::size_t kMostFavourites = 1000;
 
-// One in each line. If the list is missing or unreadable, the next scene begins a new one.
+// One on each line. If the list is missing or unreadable, the next scene begins a new one.
 std::vector<std::string> readList(const char* name, std::size_t most) {
     std::vector<std::string> scenes;
     try {

@@ -1,4 +1,4 @@
-// The scenes that were shown last, the latest first, and the favourites, from one run of the viewer to the
+// The scenes that were shown last, latest first, and the favourites, kept from one run of the viewer to the
 // next.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace binosplat {
 
 inline constexpr std::size_t kMostRecentScenes = 10;
 
-// From the user's configuration folder; none if nothing is kept or it cannot be read.
+// From the user's configuration folder; empty if nothing has been saved or it cannot be read.
 std::vector<std::string> recentScenes();
 
 // Puts `scene` first, with its full path, and saves the list atomically. Throws Error if that fails.
@@ -18,7 +18,7 @@ void rememberScene(const std::string& scene);
 
 // The scenes that the wearer marked, in the order of marking.
 std::vector<std::string> favouriteScenes();
-// These, and then the recent ones that are none of them.
+// The favourites, and then the recent ones that are not among them.
 std::vector<std::string> favouriteAndRecentScenes();
 // Marks or unmarks `scene`. Throws Error if that cannot be saved.
 void toggleFavourite(const std::string& scene);

@@ -24,17 +24,17 @@ public:
     }
 
     void pass(double step_seconds) { time_s_ += plays_ ? step_seconds : 0.0; }
-    // As another scene's does, from now on.
+    // Follows another scene's clock from now on.
     void goWith(const SceneClock& other) { time_s_ = other.time_s_, plays_ = other.plays_; }
     void togglePlaying() { plays_ = !plays_; }
-    // Steps `frames` on or, below 0, back, around the scene's end, and pauses there.
+    // Steps `frames` forwards or, below 0, back, around the scene's end, and pauses there.
     void step(std::ptrdiff_t frames) {
         plays_ = false;
         const auto count = static_cast<std::ptrdiff_t>(frames_);
         goTo(static_cast<std::size_t>(((static_cast<std::ptrdiff_t>(frame()) + frames) % count + count) %
                                       count));
     }
-    // Plays on from there, or stays paused there.
+    // Continues to play from there, or stays paused there.
     void goTo(std::size_t frame) { time_s_ = static_cast<double>(std::min(frame, frames_ - 1)) / rate_hz_; }
 
 private:

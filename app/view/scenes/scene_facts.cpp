@@ -1,4 +1,4 @@
-// Numbers about a scene, in units that are read at a glance.
+// Numbers about a scene, in units that can be read at a glance.
 #include "app/view/scenes/scene_facts.h"
 
 #include "engine/address.h"

@@ -1,4 +1,4 @@
-// Looking into folders.
+// Lists folders.
 #include "app/view/scenes/scene_list.h"
 
 #include "app/view/scenes/natural_order.h"
@@ -38,7 +38,7 @@ SceneList listBuiltinScenes() {
     return list;
 }
 
-// They are not examined: an empty or distant one may take its time.
+// They are not examined, since an empty or remote one may take long.
 SceneList listDrives(const std::vector<fs::path>& roots) {
     SceneList list{"Drives", {}, {}, {}};
     for (const fs::path& root : roots) {

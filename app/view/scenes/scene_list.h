@@ -1,4 +1,4 @@
-// A folder's contents for finding a scene: folders and scenes, in natural order.
+// A folder's contents, for finding a scene: folders and scenes, in natural order.
 #pragma once
 
 #include "app/view/scenes/seen_scenes.h"
@@ -12,7 +12,7 @@ namespace binosplat {
 
 struct SceneEntry {
     std::string name;        // as it is shown
-    std::string place;       // the folder to look into, or the scene to load
+    std::string place;       // the folder to open, or the scene to load
     bool is_folder = false;  // of scenes; false for a folder that is itself a scene
     std::string trouble;     // why it cannot be opened, in a few words; empty: it can
     std::string about{};     // its size and, if it was shown before, its kind
@@ -30,13 +30,13 @@ struct SceneList {
 // Stands for the built-in scenes, in place of a folder's path.
 inline constexpr const char* kBuiltinFolder = "builtin:";
 
-// The folder that a scene lies in, in full, or kBuiltinFolder.
+// The full path of the folder that a scene is in, or kBuiltinFolder.
 std::string folderOf(const std::string& scene);
 
 // Stands for the drives, if paths begin in several places, in place of a folder's path.
 inline constexpr const char* kDrives = "drives:";
 
-// Folders first, then scenes; hidden files and files that do not look like scenes are left out.
+// Folders first, then scenes, without hidden files and files that do not look like scenes.
 SceneList listFolder(const std::string& folder,
                      const std::vector<std::filesystem::path>& roots = fileSystemRoots());
 

@@ -1,4 +1,4 @@
-// Loading beside the frames.
+// Loads scenes alongside the frames.
 #include "app/view/scenes/scene_loader.h"
 
 #include "app/load.h"
@@ -92,7 +92,7 @@ void SceneLoader::expect(const FramesAhead& ahead) {
 void SceneLoader::load(const Context& context, const RunOptions& options, bool settled) {
     try {
         LoadNotes notes;
-        // Readers may report from threads of their own, where it must not throw.
+        // Readers may report from threads of their own, where this must not throw.
         const auto reading = [this, own = std::this_thread::get_id()](double share) {
             if (cancelled_ && std::this_thread::get_id() == own) { throw Cancelled(); }
             progress_ = kReadingShare * share;

@@ -1,4 +1,4 @@
-// Recent scenes, settings, viewpoints and pictures, as files.
+// Saves recent scenes, settings, viewpoints and pictures as files.
 #include "app/view/scenes/scene_notes.h"
 
 #include "app/view/scenes/recent_scenes.h"

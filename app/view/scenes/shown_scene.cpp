@@ -1,4 +1,4 @@
-// One scene after another.
+// Shows one scene after another.
 #include "app/view/scenes/shown_scene.h"
 
 #include "app/view/scenes/view_scenes.h"
@@ -41,7 +41,7 @@ void ShownScene::begin(const std::string& scene, const std::string& compared) {
 }
 
 void ShownScene::giveUp(std::unique_ptr<SceneLoader>& loader) {
-    // Those that are giving up are not waited for.
+    // Loaders that are giving up are not waited for.
     std::erase_if(given_up_, [](const std::unique_ptr<SceneLoader>& earlier) { return earlier->isDone(); });
     if (!loader) { return; }
     loader->cancel();
@@ -55,7 +55,7 @@ void ShownScene::load(const std::string& scene) {
     asked_ = scene;
     compared_next_.clear();
     RunOptions run = options_.run;
-    if (scene != options_.scene) {  // a given place belongs to the first one
+    if (scene != options_.scene) {  // a place on the command line is for the first scene
         run.camera.cameras_file.clear();
         run.camera.eye = run.camera.look = run.camera.up = std::nullopt;
     }
@@ -74,7 +74,7 @@ void ShownScene::lookBeside(FileWorker& files) {
                 count = asked_count_]() -> FileWorker::Done {
                    return [this, &files, count, found = sceneBeside(scene, step)] {
                        is_looking_ = false;
-                       // Unless another scene was asked for since.
+                       // Unless another scene has been asked for since.
                        if (count == asked_count_) { begin(found); }
                        if (steps_asked_ != 0) { lookBeside(files); }
                    };
@@ -115,7 +115,7 @@ void ShownScene::haveReady(Held& held, const FramesAhead& ahead) {
 }
 
 void ShownScene::takeKernels(StereoFrame& from) {
-    // All frames share them, and none may be on the device with one that goes.
+    // All frames share the kernels, and none may be on the device with a kernel that is removed.
     for (const Held* const held : {&shown_, &other_}) {
         if (held->frame) { (void)held->frame->finish(); }
         if (held->insets) { (void)held->insets->finish(); }
@@ -126,11 +126,11 @@ void ShownScene::takeKernels(StereoFrame& from) {
 ViewSettings ShownScene::drawable(ViewSettings settings) const {
     const std::optional<FramesAhead>& ready = drawing().ready;
     if (!drawn() || !ready || options_.load_first) { return settings; }
-    FramesAhead wanted = *ready;  // another size needs no new kernels to wait for
+    FramesAhead wanted = *ready;  // another size does not need new kernels
     wanted.stereo = settings.stereo;
     wanted.tint = settings.tint;
     if (!wanted.isLike(*ready)) {
-        const Axes axes = settings.stereo.axes;  // which take no other kernels
+        const Axes axes = settings.stereo.axes;  // which do not need other kernels
         settings.stereo = ready->stereo;
         settings.stereo.axes = axes;
         settings.tint = ready->tint;
@@ -164,7 +164,7 @@ std::string ShownScene::take(ViewState& state) {
 }
 
 void ShownScene::showInFrames(const LoadedScene& scene) {
-    // Each waits for its own frames in flight; after that nothing reads the previous scene.
+    // Each waits for its own frames in flight; after that, nothing reads the previous scene.
     if (shown_.frame) {
         shown_.frame->show(scene.gpu_scene);
     } else {
@@ -212,8 +212,9 @@ std::string ShownScene::makeWay(const ViewState& state) {
     shown_.scene.reset();
     load(std::string(asked_));
     compared_next_ = compared;
-    return fmt::format("{} and {} do not fit into the device's memory together: the first one goes first",
-                       gone_first_, asked_);
+    return fmt::format(
+        "{} and {} do not fit into the device's memory together: the first one is removed first", gone_first_,
+        asked_);
 }
 
 std::string ShownScene::place(ViewState& state) {

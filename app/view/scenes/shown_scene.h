@@ -18,8 +18,8 @@ namespace binosplat {
 
 class ShownScene {
 public:
-    // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead`
-    // scenes come with their kernels.
+    // Begins to load the scene of the options. `context`, `options` and `log` must outlive this. With
+    // `ahead`, scenes come with their kernels.
     ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log,
                std::optional<FramesAhead> ahead = {});
 
@@ -32,7 +32,7 @@ public:
     [[nodiscard]] StereoFrame& frame() const { return *drawing().frame; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { shown_.insets.reset(), other_.insets.reset(); }
-    // Of the drawn scene; to be taken before another one is.
+    // Of the drawn scene; the picture must be taken before another scene is drawn.
     [[nodiscard]] PictureShot shotOf(std::vector<Eye> eyes, const FrameSettings& settings) const {
         return {context_, drawing().scene->gpu_scene, std::move(eyes), settings};
     }
@@ -94,7 +94,7 @@ public:
     [[nodiscard]] std::string takeOther();
     // The other one cannot be drawn after all, and goes. Returns why, in a line.
     [[nodiscard]] std::string goOnAlone(const Error& error);
-    // Before frames of it are shown: makes what such frames take, and draws two, so that showing it needs no
+    // Before frames of it are shown: makes what such frames need, and draws two, so that showing it needs no
     // wait. Does nothing if there is no other scene, or if frames are as they were. The eyes are those of the
     // shown one. Throws Error if the device lacks the memory.
     void meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes,
@@ -103,7 +103,7 @@ public:
     // history across such a cut.
     void draw(bool other);
     [[nodiscard]] bool drawsOther() const { return draws_other_; }
-    // As the drawn scene counts.
+    // In the coordinates of the drawn scene.
     [[nodiscard]] Similarity drawnFrom(Similarity scene_from_room) const;
     [[nodiscard]] std::vector<Eye> seenFromDrawn(std::vector<Eye> eyes) const;
     // Before a frame of these eyes of the drawn scene: both request what they need, and both move on. Never
@@ -137,7 +137,7 @@ private:
     void lookBeside(FileWorker& files);
     void haveReady(Held& held, const FramesAhead& ahead);
     void takeKernels(StereoFrame& from);
-    // Eyes of the drawn scene, as the other one counts.
+    // Eyes of the drawn scene, in the coordinates of the other one.
     [[nodiscard]] std::vector<Eye> seenFromResting(std::span<const Eye> eyes) const;
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.
     [[nodiscard]] std::string goOnWithout(const std::string& why);

@@ -1,4 +1,4 @@
-// Looking around in a folder.
+// Finds the scenes in a folder.
 #include "app/view/scenes/view_scenes.h"
 
 #include "app/view/scenes/natural_order.h"

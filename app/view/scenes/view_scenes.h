@@ -10,15 +10,15 @@ namespace binosplat {
 // Judges a file by its name, a folder by its contents.
 bool looksLikeScene(const std::filesystem::path& path);
 
-// Scenes in the folder of a file or folder, in natural order (natural_order.h), or all built-in ones; hidden
-// ones are left out, but `scene` is included.
+// Scenes in the folder of a file or folder, in natural order (natural_order.h), or all built-in ones; without
+// hidden ones, but including `scene`.
 std::vector<std::string> scenesBeside(const std::string& scene);
 
-// The first of the scenes in a folder that is not one itself. Empty: `scene` is a file, is itself a scene, or
-// holds none.
+// The first scene in a folder that is not itself a scene. Empty if `scene` is a file, is itself a scene, or
+// contains none.
 std::string firstSceneIn(const std::string& scene);
 
-// The scene `step` further on, wrapping around.
+// The scene that is `step` scenes further on, wrapping around.
 std::string sceneBeside(const std::string& scene, int step);
 
 }  // namespace binosplat

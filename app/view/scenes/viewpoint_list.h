@@ -15,18 +15,18 @@ public:
     // How long a tour rests at each, once it is there.
     static constexpr double kRestSeconds = 1.5;
 
-    // Both outlive this.
+    // Both must outlive this.
     ViewpointList(FileWorker& files, Say say) : files_(files), say_(std::move(say)) {}
 
-    // Another scene is shown, or none (null); it outlives its time here.
+    // Another scene is shown, or none (null); it must exist until the next call.
     void show(LoadedScene* scene);
     [[nodiscard]] std::size_t count() const { return scene_ == nullptr ? 0 : scene_->viewpoints.size(); }
     // The one gone to last, if any.
     [[nodiscard]] std::optional<std::size_t> at() const { return at_; }
     [[nodiscard]] const Viewpoint* current() const { return at_ ? &scene_->viewpoints[*at_] : nullptr; }
 
-    // Each of these returns where to go now; null: nowhere. The first one by its number, the other so many
-    // further on, wrapping around.
+    // Each of these returns where to go now; null: nowhere. The first takes a number, the other goes this
+    // many further on, wrapping around.
     const Viewpoint* go(std::size_t index);
     const Viewpoint* goBy(int step);
     // "viewpoint 2 of 3: door".

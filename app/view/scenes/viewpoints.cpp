@@ -1,4 +1,4 @@
-// As JSON: eye, look and up of each, with its name.
+// Stores viewpoints as JSON: eye, look and up of each, with its name.
 #include "app/view/scenes/viewpoints.h"
 
 #include "app/options/start_view.h"
@@ -31,7 +31,7 @@ constexpr std::array kPoints{std::pair("eye", &View::eye), std::pair("look", &Vi
                              std::pair("up", &View::up)};
 
 fs::path keptFile(const std::string& source) { return viewFileStem(source).string() + kExtension; }
-// A line of nine numbers for each, as programs before wrote it.
+// A line of nine numbers for each, as earlier versions wrote it.
 fs::path oldFile(const std::string& source) { return viewFileStem(source).string() + ".viewpoints.txt"; }
 
 bool isView(const View& view) {
@@ -40,7 +40,7 @@ bool isView(const View& view) {
     return std::isfinite(length) && length > 0.0 && glm::length(glm::cross(ahead, view.up)) > 1e-6 * length;
 }
 
-// Lines that are no view are left out.
+// Lines that are not a view are skipped.
 std::vector<Viewpoint> readOld(const fs::path& file) {
     std::vector<Viewpoint> kept;
     std::istringstream lines(readTextFile(file, "a list of viewpoints"));
@@ -101,7 +101,7 @@ void writeViewpoints(const fs::path& file, const std::vector<Viewpoint>& viewpoi
         }
         list.push_back(std::move(entry));
     }
-    // Names come from outside: what is no UTF-8 is replaced.
+    // Names come from outside, so anything that is not UTF-8 is replaced.
     const nlohmann::ordered_json document{{"viewpoints", list}};
     OutputFiles files(file.parent_path());
     writeText(files.staging() / file.filename(),
@@ -139,7 +139,7 @@ std::vector<Viewpoint> keptViewpoints(const std::string& source) {
 void keepViewpoints(const std::string& source, const std::vector<Viewpoint>& own) {
     writeViewpoints(keptFile(source), own);
     std::error_code ignored;
-    fs::remove(oldFile(source), ignored);  // they are in the new one
+    fs::remove(oldFile(source), ignored);  // they are in the new file
 }
 
 std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source,

@@ -1,4 +1,4 @@
-// A config of the keys that were changed.
+// Stores the keys that were changed, as a config.
 #include "app/view/settings/preferences.h"
 
 #include "app/options/option_table.h"
@@ -45,7 +45,7 @@ PreferenceLines readPreferences(const std::vector<SettingsTable>& tables) {
         }
     }
     settings.stereo = run.stereo;
-    // Half resolution of the periphery is only among the lines if there is foveation.
+    // Half resolution in the periphery is among the lines only if there is foveation.
     if (settings.stereo.foveation_deg == 0.0) { settings.stereo.foveation_deg = 1.0; }
     for (const SettingLine& line : settingLines(settings)) {
         const auto found = lines.find({line.table, line.key});
@@ -60,8 +60,8 @@ PreferenceLines readPreferences(const std::vector<SettingsTable>& tables) {
 
 std::string preferencesToml(const PreferenceLines& lines) {
     std::string text =
-        "# What was set on the viewer's panel. It writes this file itself; values of --config come before "
-        "these.\n";
+        "# What was set on the viewer's panel, which writes this file; values in a --config file take "
+        "precedence.\n";
     std::string table;
     for (const auto& [place, value] : lines) {
         if (value.empty()) { continue; }
@@ -96,7 +96,7 @@ void keepPreferences(const PreferenceLines& changes) {
     std::error_code ignored;
     try {
         if (std::filesystem::exists(file, ignored)) { lines = readPreferences(readSettingsFile(file)); }
-    } catch (const Error&) {  // was said at the start
+    } catch (const Error&) {  // has been reported at the start
         std::filesystem::rename(file, file.string() + ".unread", ignored);
     }
     for (const auto& [place, value] : changes) { lines[place] = value; }

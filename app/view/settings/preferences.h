@@ -1,4 +1,4 @@
-// What somebody has set on the panel, for all scenes: kept by itself in one file of the user's, of which
+// What the user has set on the panel, for all scenes: kept automatically in one file of theirs, of which
 // --config and the command line need not know.
 #pragma once
 

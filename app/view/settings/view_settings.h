@@ -27,7 +27,7 @@ struct ViewSettings {
     double resolution_scale = 1.0;  // relative to the headset's recommendation, each way
     bool tint = false;              // show how the affiliated picture was made
     bool panel = true;
-    bool submit_depth = true;     // give the runtime depth, too; off at the start, it is off for good
+    bool submit_depth = true;     // give the runtime depth, too; if off at the start, it stays off
     bool visibility_mask = true;  // ask the runtime what the lenses hide; only at the start
     bool eye_tracking = false;    // whether the headset may track the eyes; only at the start
     // With half_periphery: leave that to the runtime if it has insets; only at the start.
@@ -45,7 +45,7 @@ struct ViewSettings {
     bool passthrough = false;              // the room in place of the background, if the headset can
     Quality quality = Quality::kBalanced;  // how the frame rate is held
     bool picture_both_eyes = false;        // pictures as files show both, side by side
-    // For the panel's box: as far as eyes usually turn before the head does.
+    // What the panel's box sets; at first, as far as eyes usually turn before the head does.
     double last_foveation_deg = 15.0;
     // Of a window without a headset, see WindowSight.
     WindowStereo window_stereo = WindowStereo::kMono;
@@ -68,7 +68,7 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
 
 // A config for --config, also for that of `render`.
 std::string viewSettingsToml(const ViewSettings& settings);
-// Only what is kept of a scene: where the wearer's room lies in it, and its measure.
+// Only what is kept of a scene: where the wearer's room lies in it, and the size of its units.
 std::string scenePlaceToml(const ViewSettings& settings);
 
 // A setting as TOML writes it.

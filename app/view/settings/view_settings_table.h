@@ -11,6 +11,6 @@ namespace binosplat {
 
 // All keys except those that place the scene.
 std::span<const OptionRow<ViewSettings>> viewSettingsRows();
-const OptionRow<ViewSettings>* findViewRow(std::string_view key);  // nullptr: there is none
+const OptionRow<ViewSettings>* findViewRow(std::string_view key);  // nullptr if there is none
 
 }  // namespace binosplat

@@ -8,13 +8,13 @@
 
 namespace binosplat {
 
-// Where the ground may be seen: on the level of the feet, beneath the wearer and before them. Points in the
-// room.
+// Where the ground may be seen: at the level of the feet, beneath the wearer and in front of them. Points in
+// the room.
 ProbePath groundAhead(const Pose& room_from_head, double feet_m);
 
 // If chosen: the wearer rises and sinks to what was seen where they stand now, or to the scene's floor where
-// nothing was. What is higher than a step is furniture, what is deeper is no ground to stand on. Nobody gets
-// under the scene's floor.
+// nothing was. What is higher than a step is furniture, what is deeper is no ground to stand on. The wearer
+// never gets below the scene's floor.
 class FollowGround : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;

@@ -1,4 +1,4 @@
-// From lens to gaze and back, without a jump.
+// Moves from the lens's centre to the gaze and back, without a jump.
 #include "app/view/wearer/gaze_follower.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::array<std::optional<Gaze>, 2> GazeFollower::update(const std::optional<glm:
     const double seen_clear_rad = std::min(kSeenClearRadians, lens_clear_rad);
     std::array<std::optional<Gaze>, 2> gazes;
     for (std::size_t side = 0; side < 2; ++side) {
-        // The target is assumed to be far away, so that both eyes turn alike.
+        // The target is assumed to be far away, so that both eyes turn in the same way.
         if (gaze_room) {
             last_[side] = glm::normalize(glm::conjugate(room_from_eyes[side].orientation) * *gaze_room);
         }

@@ -1,4 +1,5 @@
-// Where the eyes look in a frame: by the headset's eye tracker, or otherwise at the middle of their lenses.
+// Where the eyes look in a frame: according to the headset's eye tracker, or otherwise at the middle of their
+// lenses.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
@@ -11,11 +12,11 @@ namespace binosplat {
 // A gaze is forgotten once the transition back to the lens is done, and is never written anywhere.
 class GazeFollower {
 public:
-    // How far from the tracked gaze an eye may look by the time that the picture is shown: eyes converging at
-    // half a metre turn 3.6 degrees, trackers are off by 1 or 2, and eyes move on meanwhile.
+    // How far from the tracked gaze an eye may look by the time the picture is shown: eyes that converge at
+    // half a metre turn by 3.6 degrees, trackers are wrong by 1 or 2, and eyes move on meanwhile.
     static constexpr double kSeenClearRadians = 0.14;
     // How long a lost gaze, as in a blink, still counts; how long the transition to the lenses then takes;
-    // and that to a new gaze.
+    // and how long the one to a new gaze takes.
     static constexpr double kHoldSeconds = 0.2, kLoseSeconds = 0.6, kFindSeconds = 0.1;
 
     // By Side. `gaze_room`: a direction in the room, empty while none is tracked; an eye then looks up to

@@ -6,8 +6,8 @@
 
 namespace binosplat {
 
-// A stick acts when it is pushed this far, and again only after it came back below the second value. Thumbs
-// tremble within the dead zone.
+// A stick acts when it is pushed this far, and again only after it has come back below the second value.
+// Movements within the dead zone are a trembling thumb.
 inline constexpr double kStickPushed = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
 
 // The left stick walks along the head's direction, unless it teleports; the right one rises and sinks.

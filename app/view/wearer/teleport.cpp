@@ -1,4 +1,4 @@
-// The arc of a throw.
+// Computes the arc of a throw.
 #include "app/view/wearer/teleport.h"
 
 #include "app/view/placement/placement.h"
@@ -16,7 +16,7 @@ constexpr double kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
 
 bool isBlocked(const PathSeen& path, const std::vector<glm::dvec3>& arc) {
     if (path.is_hidden || !path.meets || arc.empty()) { return path.is_hidden; }
-    // The scene's own floor may lie a little above the room's.
+    // The scene's own floor may be a little above the room's.
     return arc.back().y - pointAlong(arc, *path.meets / static_cast<double>(kProbePoints - 1)).y >
            kStepMetres;
 }

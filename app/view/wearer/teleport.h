@@ -7,21 +7,21 @@ namespace binosplat {
 
 struct TeleportAim {
     Arc arc;                           // from the hand to the floor
-    std::optional<glm::dvec3> target;  // on the floor; empty: the hand is below it, and there is no arc
+    std::optional<glm::dvec3> target;  // on the floor; empty: the hand is below it, so there is no arc
 };
 
-// The arc of something thrown from the hand along its aim: the higher it points, the farther, up to some six
+// The arc of something thrown from the hand along its aim: the higher it points, the farther, up to about six
 // metres. The floor's y is `floor_m`.
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 
-// If chosen: pushing the left stick ahead, or a trigger pulled away from the panel, aims at the floor;
+// If chosen: pushing the left stick forwards, or pulling a trigger away from the panel, aims at the floor;
 // letting go moves the wearer there, unless the scene is in the way.
 class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
     [[nodiscard]] std::optional<int> aimingHand() const override { return aiming_; }
     [[nodiscard]] const Arc* arc() const override { return aim_.target ? &aim_.arc : nullptr; }
-    // The arc's end, which is red where one cannot stand.
+    // The arc's end, which is red where the wearer cannot stand.
     [[nodiscard]] std::vector<Thing> things(const glm::dvec3& eye) const override;
     [[nodiscard]] std::vector<ToolChoice> choices() const override {
         return {{"Left stick", {"Walk", "Teleport"}, &ViewSettings::teleport}};

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kPalmCosine = 0.75;
 
-// A hand whose palm is turned to the eyes points at nothing; its pinch is the menu button that bare hands
-// lack.
+// A hand whose palm is turned to the eyes does not point; its pinch serves as the menu button, which bare
+// hands lack.
 bool showsPalm(const xr::Hand& hand, int h, const glm::dvec3& eye) {
     if (!hand.joints) { return false; }
     const auto place = [&](XrHandJointEXT joint) {

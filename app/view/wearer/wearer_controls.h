@@ -7,20 +7,20 @@
 
 namespace binosplat {
 
-// The tools, and the buttons. Menu shows the panel in front of the eyes, or hides it.
+// The tools, and the buttons. The menu button shows the panel in front of the eyes, or hides it.
 class WearerControls {
 public:
     WearerControls();
 
     void update(const WearerNow& now, PanelInRoom& panel, ViewState& state);
 
-    // 1 if the right stick was just pressed in (next viewpoint), -1 for the left one (previous), or their
+    // 1 if the right stick was just pressed (next viewpoint), -1 if the left one was (previous), or their
     // sum.
     [[nodiscard]] int viewpointStep() const { return viewpoint_step_; }
     // True if a hand has just pressed the button that plays or pauses a scene.
     [[nodiscard]] bool playPressed() const { return play_pressed_; }
 
-    // The same button, while it is held: by hand.
+    // Whether the same button is held, for each hand.
     [[nodiscard]] const std::array<bool, 2>& playHeld() const { return play_held_; }
 
     // For all tools, see WearerTool.

@@ -14,9 +14,9 @@
 
 namespace binosplat {
 
-// If the runtime knows no floor: its distance below the head of a wearer who stands at the start.
+// If the runtime does not know the floor: its distance below the head of a wearer who stands at the start.
 inline constexpr double kUsualFloorMetres = 1.6;
-// One walks up and down so much.
+// How far wearers step up or down.
 inline constexpr double kStepMetres = 0.35;
 
 // The floor of a scene: its height along `up`, in scene units.
@@ -31,10 +31,10 @@ struct WearerNow {
     Pose room_from_head;
     std::optional<double> floor_m;  // the floor's y in the room, if the runtime knows
     double step_seconds = 0.0;
-    std::array<PathSeen, 2> paths{};  // of the hands' arcs a moment ago, and how they met the scene
-    // What was seen a moment ago where the ground may be, in the scene.
+    std::array<PathSeen, 2> paths{};  // of the hands' arcs a moment ago, and how they hit the scene
+    // What was seen a moment ago where the ground may be, in scene coordinates.
     std::vector<glm::dvec3> ground_scene{};
-    // If it is known; tools before may have moved the room in this frame.
+    // If it is known; earlier tools may have moved the room in this frame.
     std::optional<SceneFloor> scene_floor{};
 };
 
@@ -49,9 +49,9 @@ class WearerTool {
 public:
     virtual ~WearerTool() = default;
 
-    // Once a frame, after the panel has followed the hands.
+    // Once per frame, after the panel has followed the hands.
     virtual void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) = 0;
-    // The room's origin has moved: whatever is held is held from its new place.
+    // The room's origin has moved, so whatever is held is held from its new place.
     virtual void letGo() {}
 
     // True if it moved the wearer continuously in this frame.

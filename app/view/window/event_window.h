@@ -37,7 +37,7 @@ private:
 // The state of the window, and what has happened to it since the last call. Keys and buttons are GLFW's.
 struct WindowEvents {
     std::vector<int> pressed;    // keys, in their order
-    std::set<int> down;          // keys, also if they were let go since
+    std::set<int> down;          // keys, even if released since
     std::set<int> buttons_down;  // of the mouse, likewise
     glm::dvec2 cursor{0.0};      // as a share of the window
     bool is_hovered = false;     // the mouse is over it, and no other window between
@@ -65,9 +65,9 @@ public:
     [[nodiscard]] glm::uvec2 sizePx() const;
     // Destroy it before close(). Throws Error if drawing in the window is impossible.
     [[nodiscard]] VkSurfaceKHR surface(const Context& context) const;
-    // The window goes away, soon.
+    // The window goes away soon afterwards.
     void close();
-    // run() returns, soon.
+    // run() returns soon afterwards.
     void end();
 
 private:

@@ -73,7 +73,7 @@ WindowInput MirrorWindow::poll() {
     const glm::dvec2 size(canvas_.sizePx());
     const bool is_over =
         glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
-    // If another window lies above this one, the mouse belongs to that one.
+    // If another window is above this one, the mouse belongs to that one.
     if (is_over && (down || events.is_hovered)) {
         input.pointer = {place, down, events.wheel};
         input.uses_panel = cursor != cursor_ || down || was_down_ || events.wheel != 0.0;
@@ -91,7 +91,7 @@ WindowInput MirrorWindow::poll() {
 }
 
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
-    // Another size than in the previous frame, which is finished by now.
+    // The size differs from the previous frame's, which is finished by now.
     if (eye_px_ != size_px) {
         eye_px_ = size_px;
         try {

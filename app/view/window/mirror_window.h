@@ -17,8 +17,8 @@ class MirrorWindow {
 public:
     // The initial size of a window for such a canvas.
     [[nodiscard]] static glm::ivec2 sizeFor(glm::uvec2 canvas_px);
-    // `events` outlives this, and its window closes with this. Throws Error if the device cannot show on the
-    // display.
+    // `events` must outlive this, and its window closes with this. Throws Error if the device cannot show on
+    // the display.
     MirrorWindow(const Context& context, const Canvas& canvas, EventWindow& events);
     MirrorWindow(const MirrorWindow&) = delete;
     MirrorWindow& operator=(const MirrorWindow&) = delete;

@@ -12,7 +12,8 @@ WaitingWindow::WaitingWindow() : has_glfw_(glfwInit() == GLFW_TRUE) {
     if (!has_glfw_) { return; }
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(480, 120, "binosplat waits for a headset (Escape ends)", nullptr, nullptr);
+    window_ =
+        glfwCreateWindow(480, 120, "binosplat is waiting for a headset (Escape to stop)", nullptr, nullptr);
     if (window_ == nullptr) { return; }
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {

@@ -11,12 +11,13 @@ namespace binosplat {
 // Input from mouse and keyboard since the last poll.
 struct WindowInput {
     PanelPointer pointer;     // on the panel
-    bool uses_panel = false;  // the mouse was moved, pressed, let go or turned there
+    bool uses_panel = false;  // the mouse was moved, pressed, released or scrolled there
     glm::dvec3 walk{0.0};     // right, down, forward; -1 to 1
     double turn_rad = 0.0;    // to the right
     double turn_rate = 0.0;   // by keys, -1 to 1
     double wheel = 0.0;       // steps upwards, outside the panel: the scene grows
-    // How far the scene tilts: to the right about the line of sight, and upwards about the wearer's right.
+    // How far the scene tilts: to the right about the line of sight, and upwards about the axis to the
+    // wearer's right.
     glm::dvec2 tilt_rad{0.0};
     bool toggle_panel = false;
     bool reload_shaders = false;

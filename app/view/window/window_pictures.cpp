@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::uint64_t kLongestWaitNs = 1'000'000'000;  // for a display that has gone away
 
-// Two frames are in flight, and a frame waits for the one before the last: by then what is before it was
-// drawn and shown.
+// Two frames are in flight, and a frame waits for the one before the last: by then everything before that has
+// been drawn and shown.
 constexpr int kCallsUntilUnused = 4;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The pictures of a window, for which nobody waits.
+// The pictures of a window, which are acquired and shown without waiting.
 #pragma once
 
 #include "engine/gpu/context.h"

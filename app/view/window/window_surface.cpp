@@ -1,4 +1,4 @@
-// Choosing size, format and alpha.
+// Chooses size, format and alpha.
 #include "app/view/window/window_surface.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::optional<vk::SurfaceFormatKHR> windowFormat(std::span<const vk::SurfaceForm
             std::ranges::find(offered, vk::SurfaceFormatKHR(wanted, vk::ColorSpaceKHR::eSrgbNonlinear));
         if (found != offered.end()) { return *found; }
     }
-    // The old way to say that any will do.
+    // The old way of saying that any format will do.
     if (offered.size() == 1 && offered[0].format == Format::eUndefined) {
         return vk::SurfaceFormatKHR{kWanted[0], offered[0].colorSpace};
     }

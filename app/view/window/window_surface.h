@@ -1,4 +1,4 @@
-// Choosing from a display's offers for a window's pictures.
+// Chooses from a display's offers for a window's pictures.
 #pragma once
 
 #include <vulkan/vulkan.hpp>
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// The size of pictures: the compositor's, or if it leaves that to the program (Wayland reports 0xffffffff)
+// The size of pictures: the compositor's or, if it leaves that to the program (Wayland reports 0xffffffff),
 // the window's, within the allowed range. Empty while there is nothing to draw on, as when the window is
 // minimized.
 std::optional<vk::Extent2D> windowExtent(const vk::SurfaceCapabilitiesKHR& able, vk::Extent2D window);

@@ -10,7 +10,7 @@
 namespace binosplat {
 
 struct Address {
-    std::string text;    // as it is requested: without a fragment, and with letters beyond ASCII encoded
+    std::string text;    // as it is requested: without a fragment, and with non-ASCII letters encoded
     std::string folder;  // up to and including its last slash, without what follows a question mark
     std::string server;  // its scheme, host and port
 };
@@ -24,7 +24,7 @@ Address parseAddress(const std::string& source);
 std::optional<std::array<std::uint16_t, 8>> parseIp(std::string_view ip);
 
 // True for the numeric address of a machine that is not on the public web: this one, or one on a private
-// network or link. An IPv4 address within an IPv6 one (mapped, NAT64, 6to4) counts as itself.
+// network or link. An IPv4 address within an IPv6 one (mapped, NAT64, 6to4) counts as the IPv4 address.
 bool isPrivateAddress(const std::string& ip);
 
 // The address of the file `name` in the folder of `address`; for an empty name, `address` itself. Throws

@@ -1,4 +1,4 @@
-// Fetches files from the web, several at once, on a thread of its own. A build without libcurl has none:
+// Fetches files from the web, several at once, on a thread of its own. For a build without libcurl, see
 // no_fetcher.cpp.
 #pragma once
 
@@ -22,7 +22,7 @@ struct FetchSettings {
     int attempts = 4;
     Milliseconds first_pause{500};   // before the second attempt, then doubled each time
     Milliseconds most_pause{20000};  // the longest that a server may ask for
-    Milliseconds patience{20000};    // with a server that sends next to nothing
+    Milliseconds patience{20000};    // with a server that sends almost nothing
     std::size_t at_once = 8;
     // By a server's address; redirects from public servers must not lead there.
     std::function<bool(const std::string& ip)> is_private = isPrivateAddress;
@@ -42,14 +42,14 @@ struct Fetched {
         kRefused,      // there is no such file, or it may not be taken
     };
     Kind kind = Kind::kRefused;
-    std::string reason;  // for the last two: what is wrong and what to do, to follow the address
+    std::string reason;  // for the last two: what is wrong and what to do; follows the address in messages
     std::unique_ptr<IncomingFile> file{};
     FileVersion version{};
 };
 
 class Fetcher {
 public:
-    // `cache` outlives it. Throws Error in a build without network access.
+    // `cache` must outlive it. Throws Error in a build without network access.
     Fetcher(const WebCache& cache, const FetchSettings& settings);
     Fetcher(const Fetcher&) = delete;
     Fetcher& operator=(const Fetcher&) = delete;
@@ -57,7 +57,7 @@ public:
 
     [[nodiscard]] std::future<Fetched> request(FetchRequest request);
 
-    // For everything requested so far, as far as servers have stated sizes.
+    // The share that is done of everything requested so far, as far as servers have stated sizes.
     [[nodiscard]] double share() const;
 
 private:

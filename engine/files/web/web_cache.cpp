@@ -1,5 +1,5 @@
-// The folder's names: FINGERPRINT.json, FINGERPRINT.data, and FINGERPRINT-PROCESS-N.part while a file is on
-// its way.
+// The names in the folder: FINGERPRINT.json, FINGERPRINT.data, and FINGERPRINT-PROCESS-N.part while a file is
+// on its way.
 #include "engine/files/web/web_cache.h"
 
 #include "engine/error.h"
@@ -41,7 +41,7 @@ struct Note {
 
 constexpr const char *kNote = ".json", *kData = ".data";
 
-// Empty if it does not exist or is not whole.
+// Empty if it does not exist or is incomplete.
 std::optional<Note> readNote(const fs::path& path) {
     std::string reason;
     const File file = openRegularFile(path, reason);

@@ -1,6 +1,7 @@
 // Fetched files, kept on the disk for the next time: for each address a file with its bytes, and a note
-// (JSON) that says whose they are. Several programs may use one folder: bytes and notes are written under a
-// unique name and put in place in one step, and a note that was written for other bytes is ignored.
+// (JSON) that says which address they are from. Several programs may use the same folder: bytes and notes are
+// written under a unique name and put in place in one step, and a note that was written for other bytes is
+// ignored.
 #pragma once
 
 #include "engine/disk_room.h"
@@ -24,7 +25,7 @@ public:
 
     // False if the disk is too full for them.
     [[nodiscard]] bool write(const char* data, std::size_t bytes);
-    // How much may be written in all, to leave some of the disk free.
+    // How much may be written in total, to leave some of the disk free.
     [[nodiscard]] std::uint64_t roomBytes() const { return room_.bytes(); }
     [[nodiscard]] std::uint64_t sizeBytes() const { return size_bytes_; }
 
@@ -55,13 +56,13 @@ public:
 
     // Null, with the reason in errno, if no file can be made. Any thread.
     [[nodiscard]] std::unique_ptr<IncomingFile> begin(const std::string& address) const;
-    // Replaces the copy of it. Throws Error if it cannot be written to the disk.
+    // Replaces the kept copy. Throws Error if it cannot be written to the disk.
     void keep(const std::string& address, std::unique_ptr<IncomingFile> file,
               const FileVersion& version) const;
-    // Counts as a use.
+    // Finds a copy; this counts as a use.
     [[nodiscard]] std::optional<KeptCopy> find(const std::string& address) const;
     // Removes copies, the least recently used first, until at most `most_bytes` are left, and leftovers of
-    // programs that broke off. What cannot be removed stays.
+    // programs that were interrupted. What cannot be removed stays.
     void trim(std::uint64_t most_bytes) const noexcept;
 
 private:

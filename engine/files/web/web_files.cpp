@@ -21,7 +21,7 @@ namespace {
 // The share of the whole time that fetching takes; the rest is reading.
 constexpr double kFetchingShare = 0.7;
 constexpr std::chrono::milliseconds kLook(50);
-// Another program may remove what was just fetched, but hardly again and again.
+// Another program may remove what was just fetched, but hardly several times in a row.
 constexpr int kMostTurns = 3;
 
 std::string dateOf(std::int64_t seconds) {

@@ -1,4 +1,4 @@
-// The files of a scene on the web: kept copies that are still current, and otherwise what the server sends.
+// The files of a scene on the web: kept copies if they are still current, otherwise what the server sends.
 #pragma once
 
 #include "engine/files/load_scene.h"
@@ -27,7 +27,7 @@ struct WebSettings {
 // is none.
 std::filesystem::path webCacheFolder();
 
-// For one thread. Files of the cache stay while it exists, unless another program needs the space; then they
+// For one thread. Files in the cache stay while it exists, unless another program needs the space; then they
 // are fetched again.
 class WebFiles final : public SceneFiles {
 public:
@@ -45,7 +45,7 @@ public:
 
     // A sentence if a server did not answer and copies were used for its files; otherwise empty.
     [[nodiscard]] const std::string& stale() const { return stale_; }
-    // How many files could not be fetched so far; later they may be.
+    // How many files could not be fetched so far; this may succeed later.
     [[nodiscard]] std::uint64_t failedCount() const { return failed_count_; }
 
 private:

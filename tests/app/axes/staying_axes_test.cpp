@@ -19,7 +19,7 @@ Eye turned(const Eye& eye, double degrees, const glm::dvec3& axis) {
     return other;
 }
 
-// Where a place in the view lies in the picture.
+// Where a place in the view is in the picture.
 glm::dvec2 placeIn(const Eye& picture, const Eye& view, const glm::dvec2& place_px) {
     const Intrinsics &k = picture.intrinsics, &l = view.intrinsics;
     const glm::dvec3 ray = glm::conjugate(picture.world_from_camera.orientation) *

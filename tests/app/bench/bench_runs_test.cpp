@@ -1,4 +1,4 @@
-// bench_runs_test.txt, and how a bench ends when frames are limited to next to no time.
+// bench_runs_test.txt, and how a bench ends when frames are limited to almost no time.
 #include "tests/app/bench/benches.h"
 #include "tests/app/program_script.h"
 #include "tests/app/scores/lpips_weights.h"

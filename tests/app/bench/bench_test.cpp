@@ -45,7 +45,7 @@ TEST_CASE("a level fits if its splats do, which take less memory with fewer colo
     CHECK(!choose("--lod 1").fits);  // already the finest level
     CHECK(choose("--lod 1").level == 1u);
     const LevelChoice discs = choose("--memory-limit 3 --flatten");
-    CHECK(discs.fits(65536, 0));  // 48 bytes a splat
+    CHECK(discs.fits(65536, 0));  // 48 bytes per splat
     CHECK(!discs.fits(65537, 0));
     CHECK(!discs.fits(65536, 1));
     CHECK(!discs.fits(65536, 3));  // 140 and more
@@ -249,7 +249,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
                       {{Role::kAffiliated, FrameStage::kSplat, "project"}, 1.5},
                       {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 2.5}};
     shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 8000}};
-    // 10 us a tile and 0.5 us a pair.
+    // 10 us per tile and 0.5 us per pair.
     std::vector<BenchResult> results{predicted, shared};
     compareModes(results);
     CHECK(these(results[0].move_cost.value(), results[1].move_cost.has_value()) ==

@@ -5,7 +5,7 @@
 
 SUITE(seen_through_lens) {
 
-// 96 degrees wide and high, and 8 pixels a degree in the middle.
+// 96 degrees wide and high, and 8 pixels per degree in the middle.
 Cameras wideCameras() {
     const Eye eye{{}, intrinsicsFromFovX(glm::radians(96.0), {1024, 1024}), {1024, 1024}};
     return {eye, stereoPair(eye, 0.06), 0.06, std::nullopt};

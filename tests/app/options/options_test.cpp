@@ -1,4 +1,5 @@
-// Facts about options: the command line overrides the config, what is refused in either, and the documents.
+// Facts about options: how the command line overrides the config, what is refused in either, and the
+// documents.
 #include "app/command_line/option_documents.h"
 #include "app/options/camera_options.h"
 #include "app/options/modes.h"

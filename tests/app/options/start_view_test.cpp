@@ -1,5 +1,5 @@
-// Facts about the eyes of a picture: at first they stand where the program chooses, at a camera that comes
-// with the scene, or where the options say.
+// Facts about the eyes of a picture: at first they are where the program chooses, at a camera that comes with
+// the scene, or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
 #include "engine/builtin/procedural.h"
@@ -180,7 +180,7 @@ TEST_CASE_FIXTURE(AtWork,
     writeText(file, "[{}]");
     CHECK(startView(scene).why.find("not at a camera: " + file.string() + ": camera 0") != std::string::npos);
     CHECK(startView(loadScene("builtin:fence")).why == "at the built-in scene's own view");
-    // A drone's cameras look straight down, headed either way; z is up in what they see.
+    // A drone's cameras look straight down, facing either way; z is up in what they see.
     Scene ground = makeBuiltin("builtin:atelier", 5000);
     for (glm::vec3& p : ground.positions) { p = {p.x, p.z, -p.y}; }
     ground.rotations.assign(ground.size(), glm::quat(1, 0, 0, 0));
@@ -236,7 +236,7 @@ TEST_CASE(
         CAPTURE(found->why);
         CHECK(glm::dot(found->up, up) > 0.999);
         CHECK(found->why.find("straight down") != std::string::npos);
-        // Cameras that are close together, as if held by hand before a wall, are believed.
+        // Cameras that are close together, as if held by hand in front of a wall, are believed.
         const auto close = upOfCameras(grid(up, x, 1.0), field(up, x));
         REQUIRE(close);
         CHECK(glm::dot(close->up, x) > 0.999);
@@ -246,7 +246,7 @@ TEST_CASE(
     // vertical; cameras that look down stay plumb, and turn as well.
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
-    // Turned by so many degrees about their own up, line of sight and right.
+    // Turned by this many degrees about their own up, line of sight and right.
     const auto shaken = [&](double about_up, double about_sight, double about_right) {
         std::vector<FileCamera> cameras = grid(-z_up, x, 8.0);
         for (FileCamera& camera : cameras) {

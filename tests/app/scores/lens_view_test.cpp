@@ -7,7 +7,7 @@ SUITE(lens_view) {
 
 const glm::dvec3 kAhead(0.0, 0.0, 1.0);
 
-// 96 degrees wide and high, and 4 pixels a degree in the middle.
+// 96 degrees wide and high, and 4 pixels per degree in the middle.
 std::array<Eye, 2> wideEyes(double canting_rad = 0.0) {
     const glm::uvec2 size_px(512, 512);
     std::array<Eye, 2> eyes;
@@ -27,7 +27,7 @@ struct Lens {
         for (const int side : {kLeft, kRight}) {
             Sight& sight = sights[static_cast<std::size_t>(side)];
             sight.rendered_tiles = view.tilesOf(side);
-            // Everything within 20 degrees is seen fully, the rest by a hundredth.
+            // Everything within 20 degrees is seen fully, a hundredth of the rest.
             for (unsigned tile = 0; tile < tiles.x * tiles.y; ++tile) {
                 const glm::dvec3 direction =
                     view.directionAt(16.0 * (glm::dvec2(tile % tiles.x, tile / tiles.x) + 0.5), side);

@@ -44,8 +44,8 @@ std::optional<fs::path> trainedWeights() {
 
 TEST_CASE(
     "the distance is that of the network's description, at every size across the boundaries of pooling") {
-    // Computed in float64 with a loop for every index. Pooling halves odd sides and even ones. float32 is off
-    // by 2e-7; one channel of the last stage that is 0.1 % too large changes the result by 1.5e-6.
+    // Computed in float64 with a loop for every index. Pooling halves odd sides as well as even ones. float32
+    // differs by 2e-7; one channel of the last stage that is 0.1 % too large changes the result by 1.5e-6.
     struct {
         glm::uvec2 size_px;
         double distance;
@@ -85,9 +85,9 @@ TEST_CASE("pictures that cannot be compared are refused") {
     };
     CHECK(measure({17, 17}, {17, 17}) > 0.0);
     CHECK_THROWS_WITH_AS(measure({16, 40}, {16, 40}),
-                         "LPIPS: pictures have 16x40 pixels, must have at least 17 a side", Error);
+                         "LPIPS: pictures have 16x40 pixels, must have at least 17 on each side", Error);
     CHECK_THROWS_WITH_AS(measure({40, 16}, {40, 16}),
-                         "LPIPS: pictures have 40x16 pixels, must have at least 17 a side", Error);
+                         "LPIPS: pictures have 40x16 pixels, must have at least 17 on each side", Error);
     CHECK_THROWS_WITH_AS(measure({20, 20}, {20, 21}),
                          "cannot compare a picture of 20x20 pixels with one of 20x21", Error);
     for (const Image& bad : {makeGrey({20, 20}, 1, 0.5f), Image{}}) {

@@ -1,4 +1,4 @@
-// Weights for LPIPS that no training made, and their files.
+// Weights for LPIPS that come from no training, and their files.
 #pragma once
 
 #include "tests/suite.h"

@@ -4,7 +4,8 @@
 
 SUITE(view_compare) {
 
-// Both from one place. Alike enough that a wearer compares them, and unlike enough that a test does.
+// Both from one place. Alike enough for a wearer to compare them, and unlike enough for a test to tell them
+// apart.
 const std::string kFirst = "builtin:fence", kSecond = "builtin:slanted-wall";
 const std::string kPlace = " --eye 0,0,-1 --look 0,0,3 --up 0,-1,0";
 
@@ -12,7 +13,7 @@ TEST_CASE(
     "while a button is held the other scene is seen from the same place, at once and whole; the comparison "
     "ends where it is told to") {
     const Workplace work;
-    // The lines before the eyes are over by then. The head turns between the two times.
+    // By then the lines in front of the eyes have gone. The head turns between the two times.
     Acts acts("rate 20\nsize 96 96\nframes from 140 to 220\n");
     acts.wait(7.2 - acts.now_s);
     acts.hold("right a", 0.4).wait(0.6).move("head", "position 0.1 1.55 0.1 turn 20 5", 0.3).wait(0.1);

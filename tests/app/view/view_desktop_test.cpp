@@ -73,7 +73,7 @@ public:
         REQUIRE(lines != "");
         return lines;
     }
-    // It ends well.
+    // It ends without an error.
     void checkEnd() {
         hands("key Escape");
         CHECK(program_.exitCode() == 0);
@@ -327,7 +327,7 @@ TEST_CASE(
     desk().connection.drop(number, {work.path / "one.ply", work.path / "fence.ply"});
     window.waitFor("compares " + (work.path / "one.ply").string() + " with " +
                    (work.path / "fence.ply").string());
-    // It ends with the scene that it is a comparison of.
+    // A comparison ends when another scene replaces the first.
     desk().connection.drop(number, {work.path / "one.ply"});
     window.waitFor("shows " + (work.path / "one.ply").string());
     CHECK(numberOfWindow("one.ply - binosplat$", "WINDOW") == number);

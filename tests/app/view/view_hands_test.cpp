@@ -136,7 +136,7 @@ TEST_CASE(
     const Workplace work;
     Acts acts(kBlind + "profile valve/index_controller\n");
     std::vector<double> looks, clicks;
-    // The last one lets go half way up.
+    // The last one lets go halfway up.
     using Grip = std::vector<std::pair<double, double>>;
     for (const Grip& grip :
          {Grip{{0, 0}, {0.05, 0.45}}, Grip{{0, 0}, {0.05, 0.6}, {0.15, 0.35}, {0.4, 0.35}, {0.42, 0}},
@@ -428,7 +428,7 @@ TEST_CASE(
         .wait(0.15);
     acts.move("head", "position 0 1.6 0 turn 0 0").wait(0.05).at("recentre").wait(0.1);
     keep();  // 1
-    // The stick of the hand that points at the panel moves nobody; the other stick does.
+    // The stick of the hand that points at the panel does not move the wearer; the other stick does.
     acts.move("controller right", kRightDown).move("controller left", pointingAt(acts.panel, kMiddle));
     acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15);
     keep();  // 2

@@ -19,11 +19,11 @@ TEST_CASE(
     "back") {
     const Workplace work;
     Acts acts("rate 50\nsize 160 160\nframes none\n");
-    // One step ahead.
+    // A step forwards.
     acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15).click({1.2, 0.3}).click({-0.2, 0.3});
     const double beside = acts.look(0.05);
-    // Files are written and read beside the frames, which come as fast as they can in lock-step: they are
-    // done within this many frames.
+    // Files are written and read alongside the frames, which come as fast as they can in lock-step; this many
+    // frames are enough for them.
     constexpr double kFilesSeconds = 100 / 50.0;
     acts.click(onMethod("right")).click(onMethod("Save")).wait(kFilesSeconds);
     acts.click(onMethod("left")).click(onMethod("Load")).wait(kFilesSeconds);
@@ -110,7 +110,7 @@ TEST_CASE(
 TEST_CASE_FIXTURE(AtWork, "a rate that the headset lacks, or that it refuses, is said, and is no end") {
     Acts acts("rate 90 fixed\nsize 64 64\nframes none\n");
     acts.click(placeOf("120 Hz", true)).wait(0.1);
-    // Rates that the script changes to, even long after the end, are on the headset's list, too.
+    // Rates that the script will change to, even long after the end, are on the headset's list, too.
     const ViewRun run =
         runView(work, "fixed", acts.script() + "at 20 rate 72\nat 21 rate 80\nat 22 rate 120\n",
                 kScene + withConfig(work, "[view]\nrefresh-rate = 75\n"));
@@ -191,8 +191,8 @@ TEST_CASE_FIXTURE(AtWork,
     CHECK(run.says("the limit is 16.0 MiB (memory-limit)"));
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
-    // At the slider's middle (some 896 pixels) the eyes' pictures fit, but the pictures handed to the headset
-    // do not.
+    // At the slider's middle (about 896 pixels) the eyes' pictures fit, but the pictures handed to the
+    // headset do not.
     CHECK(choose("brought", "size 853 853\nframes none\n",
                  kOneSplat + " --hide-panel --mode shared --axes view --memory-limit 21")
               .says("presented pixels needs "));
@@ -224,7 +224,7 @@ TEST_CASE(
         .click(onMethod("predicted"))
         .wait(0.25);
     const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
-    // So near to the bars that holes open inside the picture.
+    // So close to the bars that holes open inside the picture.
     const ViewRun run = runClean(work, "walk", acts.script(),
                                  "builtin:fence --load-first --hide-panel --hide-hands --axes view --mode "
                                  "paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +

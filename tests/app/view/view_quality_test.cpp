@@ -1,4 +1,4 @@
-// Facts about holding the frame rate in the headset: by the device's times, or without them by missed
+// Facts about holding the frame rate in the headset: by the device's times or, without them, by missed
 // displays.
 #include "tests/app/view/view_acts.h"
 
@@ -6,12 +6,12 @@ SUITE(view_quality) {
 
 const std::string kNothingElse = " --hide-panel --hide-hands --load-first ";
 
-// Ticks from one timestamp to the next: far more than a period on any device, and far less.
+// Ticks from one timestamp to the next: far more than a period on any device, or far less.
 const std::string kSlow = withFaults("BINOSPLAT_FAULT_TICKS=1000000000"),
                   kQuick = withFaults("BINOSPLAT_FAULT_TICKS=1");
 
 // The display is slow, so that the program's own work fits into a period on any machine. A layer reports that
-// frames take next to no time.
+// frames take almost no time.
 constexpr int kWhole = 100;  // pixels
 
 struct Governed : ViewRun {
@@ -105,7 +105,7 @@ TEST_CASE(
          {std::pair("predicted", ""), std::pair("predicted", "visibility-mask on\n"),
           std::pair("temporal", "eye left cant 5\n"), std::pair("temporal", "visibility-mask on\n")}) {
         INFO("mode ", mode, ", lines ", lines);
-        // From side-by-side eyes to eyes with angles of their own.
+        // From side-by-side eyes to eyes with different angles.
         const ViewRun run = runClean(
             work, "ready",
             fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),

@@ -1,5 +1,5 @@
-// Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer
-// that runs do nothing.
+// Facts about operations in frames that may wait, as counted by two layers (tests/faults/waits.h): the frames
+// of a running viewer do none of them.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_quiet) {
@@ -20,7 +20,7 @@ const std::string kWatched =
     "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
     "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
 
-// What frames create or wait for between two times, until that is fixed.
+// What frames still create or wait for between two times, until it is fixed.
 struct Known {
     double begin_s, end_s;
     const char* kinds;
@@ -31,7 +31,7 @@ constexpr Known kKnown[]{
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
 
-// By frame, what it did that may wait.
+// For each frame, what it did that may wait.
 std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
     std::vector<std::set<std::string>> kinds;
     std::ifstream file(work.path / "waits.txt");
@@ -70,7 +70,7 @@ TEST_CASE(
         }
         CHECK(waits.size() == run.frames.size());
         CHECK(run.panels(waits.size() * 2 / 3).empty());
-        // All of it, or it is known no more.
+        // All of it must occur, or it must be removed from the list.
         for (const Known& known : kKnown) { CHECK(listed(found[&known]) == known.kinds); }
     }
 }

@@ -24,7 +24,7 @@ inline std::string withFaults(const std::string& faults, const std::string& envi
            faults;
 }
 
-// Pictures that are taken go into a folder of the workplace.
+// Saved pictures go into a folder of the workplace.
 inline void picturesInto(const Workplace& work) {
     std::filesystem::create_directories(work.base / "config");
     std::ofstream(work.base / "config" / "user-dirs.dirs")
@@ -113,7 +113,7 @@ struct ViewRun {
     [[nodiscard]] Image eye(std::size_t frame, int side) const {
         return sideOf(readPicture(out / fmt::format("frame_{:06}.png", frame)), side);
     }
-    // How alike two frames look to the left eye, in dB.
+    // How similar two frames look to the left eye, in dB.
     [[nodiscard]] double likeness(std::size_t a, std::size_t b) const {
         return compare(eye(a, 0), eye(b, 0)).psnrDb();
     }
@@ -203,7 +203,7 @@ inline std::string withConfig(const Workplace& work, const std::string& lines) {
 }
 inline const std::string kMethodPage = "[view]\npanel-page = \"method\"\n";
 
-// It ended well, and the validation layers were silent.
+// The run succeeded, and the validation layers were silent.
 inline void checkClean(const ViewRun& run) {
     INFO("stdout: " << run.outcome.output);
     INFO("stderr: " << run.outcome.errors);
@@ -214,7 +214,7 @@ inline void checkClean(const ViewRun& run) {
           these(std::string::npos, std::string::npos));
 }
 
-// A run that ended like that, and never had more layers than a runtime must accept.
+// A run that succeeded in this way, and never had more layers than a runtime must accept.
 inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script,
                         const std::string& arguments, const std::string& environment = kValidated) {
     const ViewRun run = runView(work, name, script, arguments, environment);
@@ -223,7 +223,7 @@ inline ViewRun runClean(const Workplace& work, const std::string& name, const st
     return run;
 }
 
-// It printed these in this order.
+// The run printed these in this order.
 inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said) {
     std::size_t from = 0;
     for (const std::string& words : said) {

@@ -150,7 +150,7 @@ public:
         const std::array<unsigned long, 2> state{is_gone ? 3ul : 1ul, 0};
         change(window, atomOf("WM_STATE"), atomOf("WM_STATE"), 32, state.data(), 2);
     }
-    // The end of dragging files to a window: their names are at the window, which is told so.
+    // The end of dragging files to a window: their names are at the window, which is told about them.
     void drop(unsigned long window, const std::vector<fs::path>& files) const {
         std::string uri;
         for (const fs::path& file : files) { uri += "file://" + file.string() + "\r\n"; }
@@ -177,7 +177,7 @@ private:
     [[nodiscard]] unsigned long atomOf(const char* name) const {
         return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
     }
-    // A property of a window: `count` numbers of so many bits.
+    // A property of a window: `count` numbers of this many bits.
     void change(unsigned long window, unsigned long property, unsigned long kind, int bits,
                 const void* numbers, std::size_t count) const {
         find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const void*, int)>(
@@ -301,7 +301,7 @@ public:
         const auto q = valueOf("scene-orientation").get<std::array<double, 4>>();
         return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}, valueOf("units-per-metre").get<double>()};
     }
-    // It ends well.
+    // It ends without an error.
     void checkEnd() {
         CHECK(program_.exitCode() == 0);
         INFO(program_.said());

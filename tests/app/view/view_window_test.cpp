@@ -1,5 +1,5 @@
-// Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it
-// ends.
+// Facts about the window alongside the headset: what mouse, keys and files do there, what it shows, and how
+// it ends.
 #include "tests/app/view/view_window.h"
 #include "app/view/window/mirror_window.h"
 #include "tests/app/view/unchanged_shaders.h"
@@ -54,7 +54,7 @@ std::ptrdiff_t countFrames(const std::string& log) {
     return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
 }
 
-// It gives up in the end if the program shows no frame meanwhile.
+// It gives up eventually if the program does not show a frame meanwhile.
 void holdUp() {
     static bool is_over = false;
     const char* const log = std::getenv(kHeldUntil);
@@ -68,8 +68,8 @@ void holdUp() {
     std::ofstream(std::string(log) + ".went-on");
 }
 
-// The eye's picture, from the window's magnified one: the window's pixels nearest to the middles of the
-// eye's.
+// The eye's picture from the magnified one in the window: the window's pixels that are nearest to the middles
+// of the eye's.
 Image eyeInWindow(const Image& screen, glm::uvec2 eye_px) {
     Image eye{eye_px, 3, {}};
     const glm::dvec2 scale = glm::dvec2(kEyePx) / glm::dvec2(eye_px);
@@ -101,7 +101,7 @@ glm::dvec3 stepBetween(const Similarity& a, const Similarity& b) {
     return glm::conjugate(a.orientation) * (b.position - a.position);
 }
 
-// Escape, or the window's cross, ends the program in a headset with these script lines.
+// Escape, or the window's close button, ends the program in a headset with these script lines.
 void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
     CAPTURE(lines);
     const Workplace work;
@@ -240,7 +240,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     viewer.click(placeOf("Vignette", true));
     CHECK(program.waitFor("vignette = true") != "");
 
-    // A drag of 100 pixels to the left turns by 0.4 radians, in however many frames; the scene follows the
+    // Dragging by 100 pixels to the left turns by 0.4 radians, in however many frames; the scene follows the
     // mouse to the left.
     const glm::dvec2 place(300.0, 300.0), beside(400.0, 300.0);
     const Similarity start = viewer.placement(work);
@@ -296,7 +296,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     const Image seen = lastLeftEye(work.path / "seen");
     REQUIRE(seen.channels == 3);
     CHECK(compare(eyeInWindow(screen, seen.size_px), seen).psnrDb() > 35.0);
-    // Beside it is the panel, which has many colours.
+    // Next to it is the panel, which has many colours.
     std::set<Colour> colours;
     const auto isNew = [&](const Colour& colour, const Colour&) { return colours.insert(colour).second; };
     const Image panel = partOf(screen, {kEyePx, 0}, glm::uvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
@@ -329,7 +329,7 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
         Program program(work.path, viewOnDesk("builtin:slanted-wall --simulate never.script"));
         REQUIRE(program.waitFor("has no headset yet") != "");
         if (by_cross) {
-            clickCross("^binosplat waits for a headset");
+            clickCross("^binosplat is waiting for a headset");
         } else {
             hands("search --sync --onlyvisible --name '^binosplat waits' mousemove --window %1 20 20");
             hands("key Escape");
@@ -340,7 +340,7 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
     }
 }
 
-// The last test: once it has a device of its own, the test program is not forked any more.
+// The last test: once the test program has a device of its own, it is not forked any more.
 TEST_CASE(
     "a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is "
     "gone") {

@@ -18,7 +18,7 @@ public:
                 nodes = R"([{"mesh":0}])", roots = "[0]", other_primitives, other_keys;
     int mode = 0;
 
-    // Adds an attribute to the splats' primitive; an attribute of the extension is named by the end of its
+    // Adds an attribute to the splats' primitive; an attribute of the extension is given by the end of its
     // name.
     void add(const std::string& name, const std::string& type, std::vector<double> values,
              int component = kGltfFloat, bool normalized = false) {

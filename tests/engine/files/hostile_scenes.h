@@ -5,7 +5,8 @@
 
 namespace binosplat::test {
 
-// A compressed PLY of `splats` times the same words; the positions of chunk i go from i to i + 1 on x.
+// A compressed PLY that holds the same words `splats` times; the positions of chunk i go from i to i + 1 on
+// x.
 struct CompressedPly {
     std::size_t splats = 1;
     // Components of 0.5/1023 sqrt(2), w the largest.

@@ -1,4 +1,4 @@
-// Scenes that come packed: in gzip, or alone in a zip archive.
+// Packed scenes: in gzip, or alone in a zip archive.
 #include "engine/files/packed_scene.h"
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/spz_files.h"
@@ -166,7 +166,7 @@ TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
                                "a.zip", makeZip(SogText{{"a.gltf", gltf}, {part, binary}}, true, prefix))));
         }
     }
-    (void)folder.write("a.bin", binary);  // beside the archive, not in it
+    (void)folder.write("a.bin", binary);  // next to the archive, not in it
     const std::string beside = makeGltf().json(R"(,"uri":"a.bin")");
     CHECK(
         contains(loadError(folder.write("a.zip", makeZip(SogText{{"in/a.gltf", beside}, {"a.bin", binary}}))),
@@ -174,7 +174,7 @@ TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
     CHECK(contains(
         loadError(folder.write("a.zip", makeZip(SogText{{"a.gltf", beside}, {"a.bin", binary.substr(1)}}))),
         fmt::format("{} bytes", binary.size() - 1)));
-    // A file that is named time and again, as in a hostile scene, is not unpacked endlessly.
+    // A file that is named again and again, as in a hostile scene, is not unpacked endlessly.
     const auto naming = [&](int times) {
         std::string uri = R"(,"uri":"a.bin")";
         for (int i = 1; i < times; ++i) { uri += R"(},{"byteLength":4,"uri":"a.bin")"; }

@@ -1,5 +1,5 @@
-// PLY files as other programs write them: what is read from each, what the notes say about it, and what is
-// not a scene.
+// PLY files as other programs write them: what is read from each, what the notes say about it, and which are
+// not scenes.
 #include "tests/engine/scene/scene_measures.h"
 
 SUITE(ply_of_others) {

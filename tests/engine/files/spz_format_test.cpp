@@ -1,4 +1,4 @@
-// SPZ: values worked out by hand, what survives writing and reading back, and what is refused.
+// SPZ: values computed by hand, what survives writing and reading back, and what is refused.
 #include "engine/files/spz.h"
 #include "engine/twin/harmonics.h"
 #include "tests/engine/files/spz_files.h"
@@ -160,8 +160,8 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
         const auto [colour, sh] = shDifferences(scene, back);
         CHECK(colour < 0.5f / 255.0f / 0.15f + 1e-4f);
         CHECK(sh <= 0.5f / 128.0f + 1e-5f);
-        // What was read does not change when written again, except that of two rotation components of nearly
-        // equal size, the other may be left out.
+        // What was read does not change when it is written again, except that if two rotation components are
+        // almost equal in size, the other may be the one not stored.
         writeSpz(back, folder.file("a.spz"));
         const Scene again = loadScene(folder.file("a.spz"));
         CHECK(these(again.positions, again.scales, again.opacities, again.sh) ==
@@ -251,7 +251,7 @@ TEST_CASE_FIXTURE(InFolder, "an SPZ that does not fit is named") {
     for (std::size_t at = 10; at < packed.size(); ++at) {  // some bytes of gzip's own header have no meaning
         std::string changed = packed;
         changed[at] = static_cast<char>(changed[at] ^ 0x10);
-        CHECK(contains(loadError(folder, changed), "broken.ply: "));  // by the checksum if by nothing else
+        CHECK(contains(loadError(folder, changed), "broken.ply: "));  // by the checksum, if nothing else
     }
     // Streams made to fill the memory.
     spz.splats = 200'000;

@@ -1,5 +1,5 @@
-// Facts about frames that are not waited for: they give the same pictures as frames that are, report a frame
-// or two later, and have lists with spare capacity.
+// Facts about frames that are not waited for: they give the same pictures as frames that are, report one or
+// two frames later, and have lists with spare capacity.
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(frame_ahead) {
@@ -18,7 +18,7 @@ Eye turned(Eye eye, double radians) {
         eye.world_from_camera.orientation * glm::angleAxis(radians, glm::dvec3(0, 1, 0));
     return eye;
 }
-// Looks at nothing.
+// An eye that looks away from everything.
 Eye awayFrom(const Eye& eye) { return turned(eye, 3.1); }
 
 // A head that moves on and turns, a little each frame.

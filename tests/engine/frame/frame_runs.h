@@ -1,4 +1,4 @@
-// Runs whole frames in tests: one call, with everything that a frame leaves.
+// Runs whole frames in tests: one call returns everything that a frame leaves.
 #pragma once
 
 #include "app/scores/metrics.h"
@@ -9,7 +9,7 @@
 namespace binosplat::test {
 
 // While this exists, frames on the tests' own device reuse kernels that were made earlier in this program.
-// This holds for frames whose options leave the threads per cell to the device; those that choose the number
+// This applies to frames whose options leave the threads per cell to the device; those that choose the number
 // make kernels of their own.
 class KeptKernels {
 public:

@@ -81,8 +81,8 @@ Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const r
     return nearest;
 }
 
-// How far the depths of opaque pixels are from the twin's: how many are off by more than 1e-3 of their value,
-// and which of these is farthest from any threshold.
+// How far the depths of opaque pixels are from the twin's: how many are wrong by more than 1e-3 of their
+// value, and which of these is farthest from any threshold.
 struct DepthErrors {
     std::uint64_t opaque = 0, off = 0;
     double greatest = 0.0, farthest_from_threshold = 0.0;
@@ -114,7 +114,7 @@ double farthestDepth(const ViewedScene& view) {
 
 // A frame must equal the twin's up to rounding, and its depths must agree within 1e-3 wherever no value of
 // the twin lies within 1e-5 of a threshold, which holds for all but 1e-4 of the pixels. Measured: 1 of the
-// atelier's 589,824 pixels is off, and none of the others'; with Mesa 25 also 11 of 133,045, where two of
+// atelier's 589,824 pixels is wrong, and none in the others; with Mesa 25 also 11 of 133,045, where two of
 // playbot's 3D Gaussians change places. Returns the picture.
 Image checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db,
                        double most_off = 1e-5) {

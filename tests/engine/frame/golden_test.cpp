@@ -19,7 +19,7 @@ std::filesystem::path stemOf(const std::string& name) {
     return std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "tests/golden" / name;
 }
 
-// The file; with BINOSPLAT_WRITE_GOLDENS=1 it is written first.
+// Reads the file; with BINOSPLAT_WRITE_GOLDENS=1, it is written first.
 Image readGolden(const std::string& name, const Image& made) {
     const char* write = std::getenv("BINOSPLAT_WRITE_GOLDENS");
     if (write != nullptr && std::string(write) == "1") {
@@ -38,7 +38,7 @@ void checkGolden(const std::string& name, const Image& expected, const Image& ac
 constexpr int kFrames = 6;
 constexpr double kBudget = 0.2;
 
-// A head that walks 3 mm a frame, sways and looks around.
+// A head that moves by 3 mm per frame, sways and looks around.
 std::array<Eye, 2> eyesAt(const Eye& start, int frame) {
     Eye eye = start;
     const glm::dvec3 step(0.003 * frame, 0.004 * std::sin(0.5 * frame), 0.001 * frame);
@@ -97,8 +97,8 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-// history_passes_test.cpp and others compare each pass with its twin; the file holds what all of their twins
-// made together.
+// history_passes_test.cpp and others compare each pass with its twin; the file holds what all the twins made
+// together.
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what it was") {
     const test::Folder folder;
     test::writeFilm(folder.file("film"), kFrames / 2 + 1, [](int frame) { return sceneAt(2 * frame); });

@@ -19,7 +19,7 @@ inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
             size_px};
 }
 
-// Each is made only once: baking the atelier's light takes longer than many tests.
+// Each is made only once, since baking the atelier's light takes longer than many tests.
 inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
     static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
     auto found = made.find({name, splats});

@@ -29,7 +29,7 @@ ViewedScene viewRoom() {
     return view;
 }
 
-// A head that walks 3 mm a frame and turns a little.
+// A head that walks 3 mm per frame and turns a little.
 std::array<Eye, 2> eyesAt(const Eye& middle, double step) {
     Eye eye = middle;
     eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
@@ -182,7 +182,7 @@ TEST_CASE_FIXTURE(Gpu, "after a jump of the head both eyes are rendered in full"
     CHECK(walk.psnr() > 36.0);
 }
 
-// The resolution changes as when a governor looks for the one that holds the rate.
+// The resolution changes as it does when a governor looks for the one that holds the rate.
 TEST_CASE_FIXTURE(
     Gpu, "a history comes from less than the way to the other eye; without one a frame is waited for") {
     constexpr double kStepMetres = 0.0033166;  // the step of eyesAt

@@ -223,7 +223,7 @@ TEST_CASE_FIXTURE(Atelier, "kernels that are made ahead leave what has come to t
     const FrameResult first = frame.render(eyes, makeSettings(Mode::kShared));
     CHECK(countOf(first, "splats_visible_left") > 0);
     CHECK_FALSE(pages.resident.hasChanges());
-    // Where nothing arrives, nothing is recorded.
+    // If nothing arrives, nothing is recorded.
     CHECK(countOf(frame.render(eyes, makeSettings(Mode::kShared)), "commands") < countOf(first, "commands"));
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     StereoFrame frame(context, resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     frame.renderAhead(eyes, makeSettings(Mode::kShared));
-    // Everything submitted from now on waits for the host. If a frame were waited for, with changes or
+    // Everything submitted from now on waits for the host. If this waited for a frame, with changes or
     // without, it would wait for ever.
     const vk::SemaphoreTypeCreateInfo timeline(vk::SemaphoreType::eTimeline, 0);
     const vk::raii::Semaphore gate = context.device().createSemaphore(vk::SemaphoreCreateInfo({}, &timeline));
@@ -291,7 +291,7 @@ TEST_CASE_FIXTURE(Gpu,
                   "where a part is exchanged, pictures that are made from their histories are right again "
                   "within some frames") {
     const ViewedScene view = viewAtelier({160, 144});
-    // What stands in front of the walls is replaced by the same in other colours.
+    // What is in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
     Scene other = parts[5];
     for (float& value : other.sh) { value = -value; }

@@ -1,5 +1,5 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: compares what the
-// compiled shaders say with offsetof and sizeof. Also checks how shaders use their constants, and structs of
+// compiled shaders say with offsetof and sizeof. Also checks how shaders use their constants and structs of
 // addresses.
 #include "engine/levels/contribute.h"
 #include "engine/passes/history_passes.h"
@@ -11,7 +11,7 @@
 
 SUITE(layout) {
 
-// A struct of shaders/shared with its fields; a struct that is missing here is noticed by the comparison.
+// A struct of shaders/shared with its fields; the comparison notices structs that are missing here.
 #define AGAIN(...) AGAIN_27(AGAIN_27(AGAIN_27(__VA_ARGS__)))
 #define AGAIN_27(...) AGAIN_9(AGAIN_9(AGAIN_9(__VA_ARGS__)))
 #define AGAIN_9(...) AGAIN_3(AGAIN_3(AGAIN_3(__VA_ARGS__)))
@@ -106,7 +106,7 @@ std::vector<Layout> hostLayouts() {
     };
 }
 
-// What is wrong with a shader's struct, or "". The language's own blocks have no twin in C++: the push
+// What is wrong with a shader's struct, or "". The language's own blocks have no counterpart in C++: the push
 // constants, the arrays behind an address, and sixteen bytes of anything (lib/history.glsl).
 std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) {
     if (shader.name == "Push" || shader.name == "Sixteen" ||

@@ -1,4 +1,4 @@
-// Facts about what a driver has compiled, and the file in which it is kept.
+// Facts about what a driver has compiled, and about the file in which it is kept.
 #include "engine/passes/passes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
@@ -88,7 +88,7 @@ TEST_CASE_FIXTURE(AtWork, "a folder that cannot be written, a file of rubbish an
     };
     std::ofstream(fileIn(folder)) << std::string(5000, 'x');
     REQUIRE(::mkfifo(fileIn(pipe_folder).c_str(), 0600) == 0);
-    // The rubbish is replaced by a file that the second run finds.
+    // The garbage is replaced by a file that the second run finds.
     for (const fs::path& place : {fs::path("/proc/nowhere"), pipe_folder, folder, folder}) {
         const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());
         const Context context({.device = {}, .validation = true});

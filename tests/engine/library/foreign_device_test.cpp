@@ -1,5 +1,5 @@
-// Facts about the library in a program's own device, command buffers and images. The validation layers watch,
-// and any message fails a fact.
+// Facts about the library with a program's own device, command buffers and images. The validation layers are
+// on, and any message fails a test.
 #include "tests/engine/library/foreign_program.h"
 
 SUITE(foreign_device) {
@@ -9,7 +9,7 @@ constexpr auto kColourUse = vk::ImageLayout::eColorAttachmentOptimal;
 constexpr auto kDepthUse = vk::ImageLayout::eDepthStencilAttachmentOptimal;
 constexpr float kNear = 0.2f;
 
-// One eye in front of a scene's splats, whose picture is drawn over what the program drew.
+// An eye in front of a scene's splats, whose picture is drawn over what the program drew.
 struct Asked {
     Asked(const ForeignProgram& program, const bsp::Scene& scene)
         : properties(scene.properties()),

@@ -37,7 +37,7 @@ struct Faults {
     long long (*live)() = nullptr;
 };
 
-// A pair of views in the program's image, of one scene or of two instances of it.
+// A pair of views in the program's images, of one scene or of two instances of it.
 struct Drawing {
     Drawing(const ForeignProgram& program, const bsp::Scene& scene)
         : views(scene.startViews(0.063, 1.2, kSize.x, kSize.y)) {
@@ -70,7 +70,7 @@ std::vector<float> drawOnce(const ForeignProgram& program, bsp::Renderer& render
     return program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4);
 }
 
-// Lets every `step`th call of a first frame fail, and of the frame after it; returns how many there were.
+// Makes every `step`th call of a first frame fail, and of the frame after it; returns how many there were.
 int checkFailures(int step, int first = 1) {
     Faults faults;
     const ForeignProgram& program = *faults.program;
@@ -103,7 +103,7 @@ int checkFailures(int step, int first = 1) {
             return failed;
         }
         ++failed;
-        // Of a kernel, only the driver's refusal is known, whatever it returned.
+        // For a kernel, it is only known that the driver refused, not what it returned.
         const bool is_kernel = std::string(call) == "vkCreateComputePipelines";
         CHECK(result == (is_kernel ? BSP_ERROR_NO_DEVICE : BSP_ERROR_OUT_OF_MEMORY));
         CHECK(std::string(bsp_error_text()) != "");

@@ -211,7 +211,7 @@ TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times t
         FieldErrors errors;
         std::size_t compared = 0;
         for (std::size_t rank = 0; rank < splats.size(); ++rank) {
-            if (tile_counts[rank] == 0) { continue; }  // splats that meet no tile are undefined
+            if (tile_counts[rank] == 0) { continue; }  // splats that touch no tile are undefined
             errors.note(splats[rank], twin.splats[rank], view, twin.order[rank]);
             ++compared;
         }

@@ -1,12 +1,12 @@
-// Facts about price and select: the most worthwhile errors up to a budget, as the twin has them, and the
-// lists that patching uses.
+// Facts about price and select: the choice of the most worthwhile tiles up to a budget, as in the twin, and
+// the lists that patching uses.
 #include "tests/engine/passes/choice_stages.h"
 
 SUITE(selection) {
 
 using reference::TileKind;
 
-// Division may be off by a few roundings, so a price may lie practically on the border of two bins.
+// Division may be wrong by a few roundings, so a price may be practically on the border between two bins.
 bool isOnBorder(double steps, double cost) {
     if (steps < 1.0) { return false; }
     const double sixteenths = std::ldexp(steps / cost, 4 - std::ilogb(steps / cost));
@@ -133,8 +133,8 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
         std::vector<gpu::uint> words;
         for (std::size_t t = 0; t < costs.size(); ++t) {
             picture_cost += costs[t];
-            // For a tile that is practically on a border of prices either bin is right, and the visible part
-            // of an error is not known to the last digit.
+            // For a tile that is practically on a border between prices, either bin is right, and the visible
+            // part of an error is not known to the last digit.
             const gpu::uint bin = got[e].prices[t] >> 22, its = prices[e][t].value_or(bin);
             const bool is_rough =
                 how.error_bound == 0.0 &&

@@ -233,9 +233,10 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "newcomers adds what a large splat near a canted eye brings to every tile it meets, up to "
-                  "what a sum holds") {
+TEST_CASE_FIXTURE(
+    Gpu,
+    "newcomers adds what a large splat near a canted eye brings to every tile it touches, up to "
+    "what a sum holds") {
     // Eyes that look past each other, and in front of one of them discs over nearly all of its 40x35 tiles.
     const glm::uvec2 size_px(640, 560);
     const auto turnBy = [](double degrees) {

@@ -1,5 +1,5 @@
-// Facts about the paper's choice of tiles, depth_bounds, edge_rois and components: against the twin, and by
-// hand.
+// Facts about the paper's choice of tiles, by depth_bounds, edge_rois and components: compared with the twin,
+// and computed by hand.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(tile_choice) {
@@ -45,7 +45,8 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     std::vector<TileKind> kinds = reference::markEdges(edges ? Borders{17, 0, 1, 20} : Borders{}, size_px);
     std::vector<Resolved> resolved;
     std::vector<std::uint8_t> classes;
-    // As resample leaves them: holes are their own parents, and everything else is a colour.
+    // In the state in which resample leaves them: holes are their own parents, and everything else is a
+    // colour.
     std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole
@@ -258,7 +259,7 @@ TEST_CASE_FIXTURE(
     std::mt19937 random(2);
     const glm::uvec2 size_px(128, 96);
     const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });
-    // An L, whose box contains tiles that its pixels do not meet, and two specks.
+    // An L, whose box contains tiles that its pixels do not touch, and two specks.
     const Mask corner = drawMask(size_px, [](auto x, auto y) {
         return (x == 2 && y < 90) || (y == 90 && x > 1 && x < 120) || (y == 10 && (x == 60 || x == 100));
     });

@@ -1,4 +1,5 @@
-// Facts about weigh: what a tile costs, which tiles are not worth moving, and whether moving pays at all.
+// Facts about weigh: what a tile costs, which tiles are not worth reprojecting, and whether reprojecting pays
+// at all.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(weigh) {
@@ -19,14 +20,14 @@ std::vector<TileRange> drawRanges(std::size_t tiles, unsigned most_pairs, std::m
     return ranges;
 }
 
-// The tiles of a case whose costs differ: their middle comes from next to the border of a tile, and rounding
+// The tiles of a case whose costs differ: their middle comes from close to the border of a tile, and rounding
 // may put it on either side.
 std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileRange>& ranges,
                           test::Rows rows) {
     StereoOnDevice device = toDevice(gpu, c, rows);
     std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
     reference::markHidden(before, c.settings);
-    // What the frame before left does not matter, unless it is hidden.
+    // What the previous frame left does not matter, except for hidden tiles.
     std::vector<gpu::uint> stale = test::kindsOf(before);
     for (std::size_t t = 0; t < stale.size(); t += 7) {
         stale[t] = stale[t] == gpu::kTileHidden ? stale[t] : gpu::kTilePredicted;

@@ -1,4 +1,4 @@
-// Facts about image files: what is written can be read back, and a failed write leaves nothing.
+// Facts about image files: what is written can be read back, and a failed write leaves nothing behind.
 #include "engine/picture/image_io.h"
 #include "engine/picture/netpbm.h"
 #include "tests/run_program.h"
@@ -107,7 +107,7 @@ TEST_CASE("colours of a picture with alpha are read as they are stored") {
 
 #ifdef BINOSPLAT_OPENIMAGEIO
 TEST_CASE("a volume is no picture") {
-    // DDS of 2x2x2 pixels of four bytes: size of the header, what it holds, height, width, bytes per row,
+    // DDS of 2x2x2 pixels of four bytes: size of the header, what it contains, height, width, bytes per row,
     // depth, mips, 11 unused words, the pixel format (size of its header, RGB with alpha, no code, bits,
     // masks), and the flag of a volume.
     constexpr std::array<std::uint32_t, 31> kHeader{

@@ -1,4 +1,4 @@
-// Where the viewer starts in captures like people's own, without cameras.
+// Where the viewer starts in captures like those that people make, without cameras.
 #include "tests/engine/places/captures.h"
 
 SUITE(standpoint) {
@@ -27,8 +27,8 @@ void checkWhole(const Standpoint& point, const glm::dvec3& middle, double radius
     CHECK(degreesOff(point, middle) < 12.0);
 }
 
-// A scene, whether the view starts inside, by how many degrees up may be off, and what else must hold, in the
-// scene's own axes.
+// A scene, whether the view starts inside, by how many degrees up may be wrong, and what else must hold, in
+// the scene's own axes.
 struct Kind {
     const char* name;
     Maker (*make)();

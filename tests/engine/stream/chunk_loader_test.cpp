@@ -1,4 +1,4 @@
-// Parts of streamed scenes, loaded beside the frames: exactly what is requested, in that order, whatever
+// Parts of streamed scenes, loaded alongside the frames: exactly what is requested, in that order, whatever
 // files and servers do.
 #include "engine/stream/chunk_loader.h"
 
@@ -112,7 +112,7 @@ TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") 
     const std::vector<LoadedPart> parts = takeAll(loader);
     CHECK(parts.size() <= 9);  // the batch that was already there
     CHECK(placesOf(parts).back() == LeafLevel{31, 2});
-    // What waits to be taken is not loaded again.
+    // Parts that are waiting to be taken are not loaded again.
     loader.want({}, {{30, 2}});
     REQUIRE(loader.waitForNews(kPatience));
     loader.want({}, {{30, 2}, {29, 2}});

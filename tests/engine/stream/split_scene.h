@@ -10,7 +10,7 @@ namespace binosplat::test {
 
 struct SplitSettings {
     std::uint32_t leaf_splats = 16384;  // at most, at the finest level
-    // Each with half of the splats of the one before, but at least one per leaf.
+    // Each has half the splats of the one before, but at least one per leaf.
     std::uint32_t levels = 5;
     std::uint32_t chunk_splats = 262144;  // per file, at most, unless a leaf has more
 };

@@ -7,7 +7,7 @@ SUITE(coarse) {
 
 constexpr double kApart = 15.0 / 7.0;  // distance of samples, in pixels
 
-// What a tile's samples see in a picture.
+// The samples of a tile of a picture.
 template <typename At>
 std::vector<glm::dvec4> samplesOf(const At& at) {
     std::vector<glm::dvec4> samples;

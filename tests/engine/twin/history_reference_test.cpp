@@ -1,4 +1,4 @@
-// Facts about the twins of reuse over time: pictures whose result is worked out by hand.
+// Facts about the twins of reuse over time, with pictures whose result is computed by hand.
 #include "engine/twin/history.h"
 #include "tests/engine/twin/reference_scenes.h"
 
@@ -157,7 +157,7 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
     CHECK(grownOf(half, wall) == doctest::Approx(64 * 3 * 0.16 * 0.16));
     CHECK(grownOf(quarter, wall) == doctest::Approx(64 * 3 * 0.12 * 0.12));
     // Pairs of rows at two depths, so that no block is uniform: half of the pixels move by 1/2, half by 1/20.
-    // Each has an equal row beside it.
+    // Each has an equal row next to it.
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
     const WarpedHistory apart = warpHistory(makeHistory(eye, stripes, bands), half);
     CHECK(std::ranges::count(apart.one_by_one, 0) == 0);
@@ -209,8 +209,8 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
         CHECK(std::count(warped.unseen.begin() + static_cast<int>(row),
                          warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
     }
-    // What a silhouette uncovers is expected to resemble what lies beside it; in a quarter of the tile, 16
-    // such pixels.
+    // What a silhouette uncovers is expected to resemble what is next to it; there are 16 such pixels in a
+    // quarter of the tile.
     CHECK(warped.picture.tiles[14].unseen == std::array<unsigned, 4>{0, 16, 0, 16});
     CHECK(warped.picture.tiles[14].grown[1] < 1.0);
     // And to the left: the near wall covers two pixels that both walls would claim.

@@ -40,7 +40,7 @@ std::vector<ActiveSet> checkActiveSets(const Session& session, const XrActionsSy
     return active;
 }
 
-// Common to the four xrGetActionState functions.
+// Shared by the four xrGetActionState functions.
 const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* getInfo, XrActionType type) {
     const XrActionStateGetInfo& info = checkStruct(getInfo, XR_TYPE_ACTION_STATE_GET_INFO);
     const AttachedAction& action = getAttached(session, info.action);

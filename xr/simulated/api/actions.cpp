@@ -101,7 +101,7 @@ XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createI
             case XR_ACTION_TYPE_VIBRATION_OUTPUT:
                 break;
             default:
-                refuse(XR_ERROR_VALIDATION_FAILURE, info.actionType, " is no type of action");
+                refuse(XR_ERROR_VALIDATION_FAILURE, info.actionType, " is not a type of action");
         }
         auto created = std::make_unique<Action>();
         created->name = textOf(info.actionName);

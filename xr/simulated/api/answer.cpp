@@ -29,7 +29,7 @@ bool isPowerOfTen(std::uint64_t number) {
     return number == 1;
 }
 
-// The runtime's lock guards what was said.
+// The runtime's lock guards the lines that were said.
 void say(const std::string& line) {
     // Limits the memory for a program whose lines are all different.
     constexpr std::size_t kMostLines = 1000;
@@ -71,8 +71,8 @@ void append(std::string& reason, XrStructureType type) {
 
 void explain(const char* function, const Refusal& refusal) {
     // A failure of the runtime itself is always reported: no application can know what to do about it. The
-    // loader asks for every function that it has heard of, even without an instance after one was refused;
-    // that is not the application's mistake.
+    // loader asks for every function that it knows, even without an instance after one was refused; that is
+    // not the application's mistake.
     const bool is_loaders =
         std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
     if (!is_loaders) {

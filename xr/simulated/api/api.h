@@ -1,5 +1,5 @@
-// All API functions of this runtime in one list: they are declared here, dispatch.cpp finds them by name,
-// docs/openxr_runtime.md says what each checks. Their definitions are in the file of their chapter.
+// All API functions of this runtime in one list: they are declared here, dispatch.cpp finds them by name, and
+// docs/openxr_runtime.md says what each one checks. Each is defined in the file of its chapter.
 #pragma once
 
 #include <type_traits>

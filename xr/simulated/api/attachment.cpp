@@ -1,4 +1,4 @@
-// The controls that attached actions are bound to, which of these count, and what they read.
+// Finds the controls that attached actions are bound to, which of them count, and what they read.
 #include "xr/simulated/api/attachment.h"
 
 #include <algorithm>
@@ -77,7 +77,7 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
         if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) {
             continue;
         }
-        // Among several sources the strongest counts; for booleans that is "or".
+        // Among several sources, the strongest counts; for booleans that is "or".
         const glm::dvec2 value = valueOf(controller, source, action.type);
         if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) { reading.value = value; }
     }
@@ -191,7 +191,7 @@ AttachedAction& getAttached(Session& session, XrAction action) {
 
 namespace {
 
-// An action and what it read; null if it is not attached, or the session does not run.
+// An action and what it read; null if it is not attached, or the session is not running.
 std::pair<const AttachedAction*, const ActionReading*> readingOf(const Session& session, std::uint64_t action,
                                                                  XrPath subaction_path) {
     if (!session.attachment || !session.is_running) { return {}; }

@@ -1,5 +1,5 @@
-// XR_EXT_conformance_automation: a program's own test moves inputs, poses and profiles from inside; the rest
-// follows the script.
+// XR_EXT_conformance_automation: a program's own test sets inputs, poses and profiles; the rest follows the
+// script.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// From a suggested path to a component.
+// Resolves a suggested path to a component.
 #include "xr/simulated/api/bound_source.h"
 
 #include "xr/simulated/api/instance.h"
@@ -7,8 +7,8 @@
 namespace simulated {
 namespace {
 
-// The component that a suggested path means for an action of this type, by the specification's rules; none:
-// it stays unbound.
+// The component that a suggested path means for an action of this type, by the specification's rules; if
+// empty, the action stays unbound.
 std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path,
                                    XrActionType type, const Enabled& enabled) {
     const auto firstOf = [&](std::initializer_list<const char*> components) -> std::optional<std::string> {

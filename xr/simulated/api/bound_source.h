@@ -1,4 +1,4 @@
-// The meaning of a suggested binding for an action of some type (chapter 11, "Suggested Bindings").
+// What a suggested binding means for an action of a given type (chapter 11, "Suggested Bindings").
 #pragma once
 
 #include <openxr/openxr.h>
@@ -23,7 +23,7 @@ struct BoundSource {
     std::string component;  // "trigger/value"; "thumbstick" for both axes; "grip/pose"; "haptic"
 };
 
-// None if the profile has nothing there for this type of action: it stays unbound.
+// Nothing if the profile has nothing there for this type of action, which then stays unbound.
 std::optional<BoundSource> bindSource(const Instance& instance, const Profile& profile, XrPath path,
                                       XrActionType type);
 

@@ -41,7 +41,7 @@ vk::ImageCreateInfo createInfoOf(const ImageInfo& info) {
             vk::ImageUsageFlags(info.usage)};
 }
 
-// The layout in which XR_KHR_vulkan_enable2 hands images over, both ways.
+// The layout in which images are handed over in XR_KHR_vulkan_enable2, in both directions.
 vk::ImageLayout layoutOf(const ImageInfo& info) {
     return info.format.aspects == kColour ? vk::ImageLayout::eColorAttachmentOptimal
                                           : vk::ImageLayout::eDepthStencilAttachmentOptimal;
@@ -64,7 +64,8 @@ struct Device::Implementation {
     Unique<vk::DeviceMemory> allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted);
     void transition(const DeviceImage& image, vk::ImageLayout from, vk::ImageLayout to) const;
     void begin();
-    // Submits and waits: results are there when this returns, and every run does the same in the same order.
+    // Submits and waits: results are available when this returns, and every run does the same in the same
+    // order.
     void finish();
 };
 
@@ -114,7 +115,8 @@ Unique<vk::DeviceMemory> Device::Implementation::allocate(const vk::MemoryRequir
 
 void Device::Implementation::transition(const DeviceImage& image, vk::ImageLayout from,
                                         vk::ImageLayout to) const {
-    // Orders everything that the application did before and does after; speed does not matter here.
+    // Waits for everything that the application did before, and makes everything after wait; speed does not
+    // matter here.
     const auto everything = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
     const vk::ImageMemoryBarrier barrier(
         everything, everything, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image.handle(),

@@ -1,5 +1,6 @@
-// The application's Vulkan device, as this runtime uses it: images made on it, and their texels read back on
-// the application's queue in the calls where OpenXR allows that (XR_KHR_vulkan_enable2, "Concurrency").
+// The application's Vulkan device, as this runtime uses it: images are made on it, and their texels are read
+// back on the application's queue in the calls in which OpenXR allows that (XR_KHR_vulkan_enable2,
+// "Concurrency").
 #pragma once
 
 #include <memory>
@@ -24,7 +25,7 @@ struct ImageInfo {
     std::uint32_t mips;
     VkImageUsageFlags usage;
     VkImageCreateFlags flags;
-    // 6 for a cube map, whose faces are array layers: `layers` counts them all.
+    // 6 for a cube map, whose faces are array layers; `layers` counts them all.
     std::uint32_t faces = 1;
 };
 
@@ -36,7 +37,7 @@ public:
     Device(PFN_vkGetInstanceProcAddr loader, const XrGraphicsBindingVulkan2KHR& binding);
     ~Device();
 
-    // The formats that this device can draw to, in the order of preference.
+    // The formats that this device can draw to, in order of preference.
     [[nodiscard]] const std::vector<SwapchainFormat>& formats() const;
     // XR_ERROR_FEATURE_UNSUPPORTED, XR_ERROR_VALIDATION_FAILURE beyond the device's limits.
     void checkImage(const ImageInfo& info) const;

@@ -1,4 +1,4 @@
-// Events in and out of the queue, removal of a session's events, and xrPollEvent.
+// Putting events into the queue and taking them out, removing a session's events, and xrPollEvent.
 #include "xr/simulated/api/events.h"
 
 #include <algorithm>

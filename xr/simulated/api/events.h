@@ -1,5 +1,5 @@
-// The queue that xrPollEvent empties. It is bounded: what does not fit is counted, and the application is
-// told how many it lost.
+// The queue that xrPollEvent empties. It is bounded: events that do not fit are counted, and the application
+// is told how many were lost.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Sections 10.4 and 10.5: the frame loop. In lock-step xrWaitFrame moves time on by one period and does not
+// Sections 10.4 and 10.5: the frame loop. In lock-step, xrWaitFrame advances time by one period and does not
 // sleep.
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ Session& getRunningSession(XrSession session) {
 void checkBlendMode(XrEnvironmentBlendMode mode, const Script& script) {
     const bool is_known =
         mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
-    require(is_known, XR_ERROR_VALIDATION_FAILURE, mode, " is no blend mode");
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, mode, " is not a blend mode");
     const bool is_offered = std::ranges::any_of(script.blend_modes, [&](Script::BlendMode offered) {
         return static_cast<int>(offered) + 1 == static_cast<int>(mode);
     });

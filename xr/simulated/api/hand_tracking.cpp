@@ -20,7 +20,7 @@ struct HandTracker : SessionChild {
     HandTracker(Session& owner, Side of_side) : SessionChild(owner), side(of_side) {}
 };
 
-// Joints in the base space; none while the hand is not seen.
+// Joints in the base space; empty while the hand is not seen.
 std::optional<std::array<HandJoint, kHandJoints>> findJoints(const HandTracker& tracker, const Space& base,
                                                              XrTime time) {
     const State state = tracker.session.at(time);

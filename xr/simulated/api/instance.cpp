@@ -1,4 +1,4 @@
-// Instances: checks on creation, the extensions on offer, and names of results and structure types.
+// Instances: checks on creation, the offered extensions, and names of results and structure types.
 #include "xr/simulated/api/instance.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::vector<Extension> listOfferedExtensions(const Script& script) {
     return offered;
 }
 
-// A broken script is reported when the instance is made; until then it removes no extension.
+// A broken script is reported when the instance is made; until then it does not remove extensions.
 Script loadScriptBeforeInstance() {
     try {
         return loadScriptOfEnvironment();
@@ -41,7 +41,8 @@ void checkApplication(const XrApplicationInfo& application) {
 }
 
 [[noreturn]] void refuseExtension(const char* name) {
-    // Programs with another graphics API could have no session here: they are told at once what is supported.
+    // Programs with another graphics API could not have a session here, so they are told at once what is
+    // supported.
     for (const char* const graphics :
          {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
         if (std::strcmp(name, graphics) != 0) { continue; }
@@ -109,7 +110,7 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         XrInstance& output = checkOutput(instance);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags,
                 ", no flags are known");
-        // API layers are the loader's business: it passes their names through, and a runtime ignores them.
+        // API layers are the loader's concern: it passes their names through, and a runtime ignores them.
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");

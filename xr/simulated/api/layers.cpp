@@ -1,4 +1,4 @@
-// Projections and quads: checked, composed and logged. Layers that surround the wearer are in
+// Checks, composes and logs projections and quads. Layers that surround the wearer are in
 // surrounding_layers.cpp.
 #include "xr/simulated/api/layers.h"
 
@@ -90,7 +90,7 @@ void checkProjection(const Session& session, const XrCompositionLayerProjection&
 void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
     checkEyeVisibility(layer.eyeVisibility);
     checkPose(layer.pose);
-    // A quad may be a line or a point: nobody sees it.
+    // A quad may be a line or a point, which is not visible.
     require(layer.size.width >= 0 && layer.size.height >= 0, XR_ERROR_VALIDATION_FAILURE,
             "the quad's size is ", layer.size.width, " ", layer.size.height, ", must not be negative");
     checkColour(checkSubImage(session, layer.subImage));
@@ -131,7 +131,7 @@ std::vector<std::string> loggedFlags(XrCompositionLayerFlags flags) {
 
 void checkEyeVisibility(XrEyeVisibility visibility) {
     require(visibility >= XR_EYE_VISIBILITY_BOTH && visibility <= XR_EYE_VISIBILITY_RIGHT,
-            XR_ERROR_VALIDATION_FAILURE, visibility, " is no eye visibility");
+            XR_ERROR_VALIDATION_FAILURE, visibility, " is not an eye visibility");
 }
 
 Visibility visibilityOf(XrEyeVisibility visibility) {

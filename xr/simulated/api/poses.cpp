@@ -1,4 +1,4 @@
-// Conversions, velocities from two poses, and the check of a pose that an application gives.
+// Converts poses, computes velocities from two poses, and checks poses that an application gives.
 #include "xr/simulated/api/poses.h"
 
 #include <cmath>
@@ -31,7 +31,7 @@ Motion motionOf(const Pose& a_step_before, const Pose& a_step_after) {
     const glm::vec3 linear((a_step_after.position - a_step_before.position) / kSeconds);
     glm::dquat turn = a_step_after.orientation * glm::conjugate(a_step_before.orientation);
     if (turn.w < 0) { turn = -turn; }
-    // Small turns: the vector part is half the angle along the axis.
+    // For small turns, the vector part is half the angle along the axis.
     const glm::vec3 angular(glm::dvec3(turn.x, turn.y, turn.z) * (2 / kSeconds));
     return {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};
 }

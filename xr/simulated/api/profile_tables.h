@@ -1,5 +1,5 @@
 // Which paths each interaction profile has, as the registry of OpenXR 1.1.61 (xr.xml) lists them. Made by
-// make_profile_tables.py, which says how; not to be edited. Vectors such as /input/thumbstick stand here as
+// make_profile_tables.py, which says how; not to be edited. Vectors such as /input/thumbstick are listed as
 // their parts.
 #pragma once
 

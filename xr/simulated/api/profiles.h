@@ -13,8 +13,8 @@ namespace simulated {
 // A component's type in the registry.
 enum class ComponentKind { kBoolean, kFloat, kPose, kVibration };
 
-// `depends` is in the registry's words: names of versions and extensions, + is and, a comma is or; empty:
-// always.
+// `depends` is in the registry's notation: names of versions and extensions, where + is and, and a comma is
+// or; empty: always.
 struct Component {
     ComponentKind kind;
     std::string_view path;            // "/input/trigger/value"
@@ -39,7 +39,7 @@ struct Enabled {
     [[nodiscard]] bool meets(std::string_view depends) const;
 };
 
-// In the simulated controllers' order of preference; profiles that they cannot play come last.
+// In the simulated controllers' order of preference; profiles that they cannot simulate come last.
 std::span<const Profile> listProfiles();
 // Null if the core has no such profile.
 const Profile* findProfile(std::string_view path);
@@ -54,7 +54,7 @@ bool allowsBinding(const Profile& profile, std::string_view binding, const Enabl
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path,
                                const Enabled& enabled);
 
-// The extension or version that this path needs in the profile, if only that is missing; else empty.
+// The extension or version that this path needs in the profile, if only that is missing; otherwise empty.
 std::string_view findNeeded(const Profile& profile, std::string_view binding);
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of

@@ -1,4 +1,4 @@
-// A session's states, and what the script's events do to them.
+// A session's states, and how the script's events change them.
 #include "xr/simulated/api/session.h"
 
 #include <cmath>
@@ -12,19 +12,19 @@
 namespace simulated {
 namespace {
 
-// The state that the wearer and the script want the session in.
+// The state in which the wearer and the script want the session to be.
 XrSessionState targetOf(const Session& session, const State& wanted) {
     if (session.wants_exit || !wanted.worn) { return XR_SESSION_STATE_STOPPING; }
     if (!wanted.visible) { return XR_SESSION_STATE_SYNCHRONIZED; }
     return wanted.focused ? XR_SESSION_STATE_FOCUSED : XR_SESSION_STATE_VISIBLE;
 }
 
-// LOCAL_FLOOR goes where LOCAL goes.
+// LOCAL_FLOOR moves along with LOCAL.
 void announceRecentring(const Session& session, double change_s) {
     const Simulation& simulation = *session.instance.simulation;
     const XrTime change_time = simulation.clock.timeAt(change_s);
     const auto announce = [&](XrReferenceSpaceType type, Pose (Script::*stage_from_space)(double) const) {
-        // Just before and after: the time itself is a sum and may be off by rounding.
+        // Just before and after, since the time itself is a sum and subject to rounding.
         constexpr double kBeside = 1e-6;
         const Pose before = (simulation.script.*stage_from_space)(change_s - kBeside),
                    after = (simulation.script.*stage_from_space)(change_s + kBeside);

@@ -21,7 +21,7 @@ struct FrameLoop {
     std::optional<XrTime> begun;   // begun, not ended yet
     std::int64_t missed = 0;       // periods beyond its own that the last ended frame took
     std::optional<double> gpu_ms;  // the GPU time that the script gives it
-    bool should_render = false;    // what the last frame waited for was told
+    bool should_render = false;    // what the last xrWaitFrame answered
     bool are_used = false;         // a frame was waited for since the session began
     bool moves_state = false;      // the frame that was begun has yet to move the session's state
     std::string refused_for;       // why the begun frame could not be ended

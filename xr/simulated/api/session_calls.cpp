@@ -9,7 +9,7 @@
 namespace simulated {
 namespace {
 
-// Graphics bindings of the two extensions are the same structure with the same type. None: the session is
+// Graphics bindings of the two extensions are the same structure with the same type. Null: the session is
 // headless.
 const XrGraphicsBindingVulkan2KHR* checkBinding(const Instance& instance, const XrSessionCreateInfo& info) {
     const auto* const found =

@@ -1,4 +1,4 @@
-// Begins a simulation as the environment's variables say; after a loss it is kept for the next instance.
+// Begins a simulation as the environment variables say; after a loss it is kept for the next instance.
 #include "xr/simulated/api/simulation.h"
 
 #include <cmath>
@@ -52,8 +52,8 @@ std::string findFavouriteProfile(const Script& script) {
 }
 
 std::unique_ptr<Simulation>& getSurvivor() {
-    // The loader closes the library between two instances; it is linked so that it stays loaded, or this
-    // would be forgotten.
+    // The loader closes the library between two instances; the library is linked so that it stays loaded, or
+    // this would be forgotten.
     static std::unique_ptr<Simulation> simulation;
     return simulation;
 }

@@ -169,7 +169,7 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         const XrReferenceSpaceCreateInfo& info = checkStruct(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkOutput(space);
         require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED,
-                info.referenceSpaceType, " is no reference space that this session has");
+                info.referenceSpaceType, " is not a reference space that this session has");
         checkPose(info.poseInReferenceSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
@@ -206,7 +206,7 @@ XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType r
         // Unlike xrCreateReferenceSpace, whose conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED
         // for any unknown type.
         require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, referenceSpaceType,
-                " is no reference space that this session has");
+                " is not a reference space that this session has");
         checkOutput(bounds) = is_stage ? XrExtent2Df{3, 2} : XrExtent2Df{0, 0};
         return is_stage ? XR_SUCCESS : XR_SPACE_BOUNDS_UNAVAILABLE;
     });

@@ -38,7 +38,7 @@ T& checkStruct(T* structure, XrStructureType type) {
     return *structure;
 }
 
-// For structures that may be left out altogether.
+// For optional structures.
 template <class T>
 void checkOptional(const T* structure, XrStructureType type) {
     if (structure != nullptr) { checkType(*structure, type); }
@@ -64,7 +64,7 @@ inline void checkFlags(XrFlags64 flags, XrFlags64 known, const char* name) {
             ", must be of the bits ", known);
 }
 
-// The two-call idiom's first half. True: there is room, copy. False: only the count was asked for.
+// The two-call idiom's first half. True: there is space, so copy. False: only the count was asked for.
 inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void* array, std::size_t size) {
     require(count != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the count is missing");
     *count = static_cast<std::uint32_t>(size);
@@ -89,7 +89,7 @@ inline void fillString(std::uint32_t capacity, std::uint32_t* count, char* buffe
 
 // An application's text, in quotes and without characters that a line cannot show.
 std::string makePrintable(std::string_view text);
-// A fixed array's text; XR_ERROR_VALIDATION_FAILURE if it has no end or is not UTF-8.
+// A fixed array's text; XR_ERROR_VALIDATION_FAILURE if it is not terminated or not UTF-8.
 std::string textOf(const char* characters, std::size_t size);
 template <std::size_t size>
 std::string textOf(const char (&characters)[size]) {

@@ -6,7 +6,7 @@
 namespace simulated {
 namespace {
 
-// Sets a property in an extension's structure, if that is there and the extension is enabled.
+// Sets a property in an extension's structure, if the structure is there and the extension is enabled.
 template <class Structure>
 void tell(const Instance& instance, void* next, XrStructureType type, const char* extension,
           XrBool32 Structure::*what, bool value) {

@@ -47,7 +47,7 @@ void checkViewConfiguration(const Instance& instance, XrViewConfigurationType ty
     const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO ||
                           type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
                           (type == kInset && knowsInset(instance));
-    require(is_known, XR_ERROR_VALIDATION_FAILURE, type, " is no view configuration");
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, type, " is not a view configuration");
     const bool is_there =
         type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || (type == kInset && hasInset(instance));
     require(is_there, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "the view configuration is ", type,

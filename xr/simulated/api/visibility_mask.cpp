@@ -18,7 +18,7 @@ Mesh meshOf(const Fov& fov, XrVisibilityMaskTypeKHR type) {
         case XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR:
             return makeVisibleOutline(fov);
         default:
-            refuse(XR_ERROR_VALIDATION_FAILURE, type, " is no type of mask");
+            refuse(XR_ERROR_VALIDATION_FAILURE, type, " is not a type of mask");
     }
 }
 

@@ -1,5 +1,5 @@
-// The wearer's view: layers blended in linear light, one eye at a time, to 8-bit sRGB. On the CPU, and the
-// same in every run.
+// The wearer's view: layers blended in linear light, one eye at a time, to 8-bit sRGB. This is done on the
+// CPU, with the same result in every run.
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
@@ -24,7 +24,7 @@ enum class Transfer {
     kSrgb,    // values are sRGB-encoded: *_SRGB swapchains
 };
 
-// One array layer of a swapchain image, rows from the top, tightly packed. The texels stay the caller's.
+// One array layer of a swapchain image, rows from the top, tightly packed. The texels belong to the caller.
 struct Picture {
     glm::uvec2 size_px{0, 0};
     Texels texels = Texels::kRgba8;
@@ -69,8 +69,8 @@ struct QuadLayer {
     Blending blending;
 };
 
-// The inside of a cylinder about the y axis of its pose, the middle of its picture at -z. A radius of 0 or
-// infinity: it is infinitely far.
+// The inside of a cylinder about the y axis of its pose, with the middle of its picture at -z. With a radius
+// of 0 or infinity it is infinitely far away.
 struct CylinderLayer {
     Picture picture;
     Rect rect;
@@ -82,7 +82,7 @@ struct CylinderLayer {
     Blending blending;
 };
 
-// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z.
+// The inside of a sphere, or of a piece of it between two latitudes and over a span of longitudes about -z.
 // Radii as for cylinders.
 struct SphereLayer {
     Picture picture;
@@ -125,8 +125,8 @@ struct EyeView {
     Fov fov;
 };
 
-// The room behind all layers, if the headset does not shut it out: light that is added, or that shows as far
-// as the layers' alpha lets it.
+// The room behind all layers, if the headset does not block it: light that is added, or that is seen as far
+// as the layers' alpha lets it through.
 struct Backdrop {
     glm::dvec3 light{0.0};  // linear
     bool adds = false;
@@ -134,15 +134,15 @@ struct Backdrop {
 
 // Layers in submission order over the backdrop. A projection layer is reprojected from its own view's
 // orientation to the eye's, by directions; nothing is drawn where the view had no picture. An inset replaces
-// that part of its eye's view, edges included; the two are blended as one picture. Of a view that has the
-// eye's own pixels, and perhaps more around them, an sRGB picture comes through byte for byte.
+// that part of its eye's view, edges included; the two are blended as one picture. If a view has the eye's
+// own pixels, and perhaps more around them, its sRGB picture is kept byte for byte.
 [[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers,
                                     const Backdrop& backdrop = {});
 
 // Left and right eye side by side, at the top of a picture as tall as the taller one.
 [[nodiscard]] RgbPicture putSideBySide(const RgbPicture& left, const RgbPicture& right);
 
-// IEC 61966-2-1, both on 0 to 1; a byte decoded and encoded is the same byte.
+// IEC 61966-2-1, both for values from 0 to 1; decoding and encoding a byte gives the same byte.
 [[nodiscard]] double decodeSrgb(double encoded);
 [[nodiscard]] double encodeSrgb(double linear);
 

@@ -11,8 +11,8 @@ namespace simulated {
 
 namespace {
 
-// Enough that a polygon differs from the ellipse by less than a pixel of 4096: 1 - cos(pi / 64) is 0.0012 of
-// the radius; a multiple of 4, so that each corner of the view has its own quarter.
+// Enough corners for a polygon to differ from the ellipse by less than a pixel out of 4096: 1 - cos(pi / 64)
+// is 0.0012 of the radius; a multiple of 4, so that each corner of the view has its own quarter.
 constexpr std::uint32_t kOutlineCorners = 64;
 
 struct Span {
@@ -22,7 +22,7 @@ struct Span {
 Span makeSpan(double middle, double half, const Span& whole) {
     if (whole.high - whole.low <= 2.0 * half) { return whole; }
     const double nearest = std::clamp(middle, whole.low + half, whole.high - half);
-    // Not outside by a rounding error.
+    // Must not be outside by a rounding error.
     return {std::max(nearest - half, whole.low), std::min(nearest + half, whole.high)};
 }
 
@@ -88,7 +88,7 @@ Mesh makeHiddenMesh(const Fov& fov) {
                right = static_cast<float>(std::tan(fov.right_rad));
     const auto up = static_cast<float>(std::tan(fov.up_rad)),
                down = static_cast<float>(std::tan(fov.down_rad));
-    // In the order in which the ellipse passes them: a fan from each corner of the view to its quarter.
+    // In the order in which the ellipse passes them, a fan from each corner of the view to its quarter.
     mesh.vertices.insert(mesh.vertices.end(), {{right, up}, {left, up}, {left, down}, {right, down}});
     for (std::uint32_t i = 0; i < kOutlineCorners; ++i) {
         const std::uint32_t quarter = i / (kOutlineCorners / 4);

@@ -1,4 +1,4 @@
-// Where a pixel's ray leaves a cylinder, a sphere or a cube, and what is seen of its picture there.
+// Finds where a pixel's ray leaves a cylinder, a sphere or a cube, and what is seen of its picture there.
 #include "xr/simulated/compose/seen_shapes.h"
 
 #include <glm/geometric.hpp>

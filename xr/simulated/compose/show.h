@@ -1,13 +1,13 @@
-// A frame as the wearer sees it: composed, written and logged, if SIMULATED_OPENXR_OUT names a folder.
+// Composes, saves and logs a frame as the wearer sees it, if SIMULATED_OPENXR_OUT names a folder.
 #pragma once
 
 #include "xr/simulated/api/session.h"
 
 namespace simulated {
 
-// For a frame that passed every check.
+// For a frame that has passed every check.
 void showFrame(Session& session, const XrFrameEndInfo& info, const State& state);
-// A line of its own in the log for a frame that was refused, or for events that no frame will log.
+// A separate line in the log for a frame that was refused, or for events that no frame will log.
 void logBetween(Session& session, const Refusal* refusal = nullptr);
 
 }  // namespace simulated

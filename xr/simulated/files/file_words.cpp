@@ -1,4 +1,4 @@
-// Words read as numbers, trimmed, and made fit for a message.
+// Reads words as numbers, trims them, and prepares them for messages.
 #include "xr/simulated/files/file_words.h"
 
 #include <cmath>

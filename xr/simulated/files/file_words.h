@@ -1,4 +1,4 @@
-// Common to the readers of headsets and head motion: numbers, and errors that name file and line.
+// Shared by the readers of headsets and head motion: numbers, and errors that name file and line.
 #pragma once
 
 #include <charconv>
@@ -25,13 +25,13 @@ template <typename... Parts>
     throw Error(text.str());
 }
 
-// A word as a message shows it: short and printable.
+// A word in the form that a message shows: short and printable.
 [[nodiscard]] std::string shown(std::string_view word);
 
-// The whole word as a number of the C locale; none if it is anything else, or not finite.
+// The whole word as a number in the C locale; empty if it is anything else, or not finite.
 [[nodiscard]] std::optional<double> parseNumber(std::string_view word);
 
-// The whole word as a whole number; none if it is anything else, or too large for the type.
+// The whole word as an integer; empty if it is anything else, or too large for the type.
 template <typename Integer>
 [[nodiscard]] std::optional<Integer> parseWhole(std::string_view word) {
     Integer value = 0;

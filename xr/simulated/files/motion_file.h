@@ -16,7 +16,7 @@ struct MotionSample {
 
 struct MotionFile {
     std::vector<MotionSample> samples;
-    std::string note;  // a sentence on what was left out; empty: nothing
+    std::string note;  // a sentence about what was skipped; empty: nothing
 };
 
 // Lines of eight comma-separated numbers: time, position x, y, z in metres, orientation x, y, z, w; blanks
@@ -26,11 +26,11 @@ struct MotionFile {
 //     Without one, numbers under 1e12 are seconds and those from 1e16 to 1e18 ticks, as Windows counts them;
 //     for others, the unit must be stated;
 //   - a fifth column called w or qw means that the orientation is w, x, y, z.
-// At least one sample, times strictly increasing from 0. Throws Error with file and line: other numbers of
-// columns, numbers that are not finite, times that do not increase, orientations whose length is not 1 to 5
-// %, texts without a pose. Only a last row that is broken since the recorder was stopped in it is left out,
-// with a note: one that has too few columns, nothing behind its time, or a broken last number and no line
-// break.
+// There is at least one sample, and times increase strictly from 0. Throws Error with file and line for other
+// numbers of columns, numbers that are not finite, times that do not increase, orientations whose length is
+// not 1 to within 5 %, and texts without a pose. Only a last row that is incomplete because the recorder was
+// stopped is skipped, with a note: one that has too few columns, nothing after its time, or a broken last
+// number and no line break.
 [[nodiscard]] MotionFile parseMotion(std::string_view text, const std::string& file);
 
 }  // namespace files

@@ -1,7 +1,7 @@
 // Scans every byte. toml++ 3.1 to 3.4 makes a table within a table for each dot of a key and frees them by
 // recursion, and runs into an "unreachable" branch at letters such as U+00A1 to U+0499 or U+FAE6 to U+FEFE
 // wherever it asks whether a word goes on. Letters in quotes must not get there, so quotes are allowed only
-// where toml++ takes them for a text, and not for more letters of a word that is already wrong.
+// where toml++ takes them for a string, and not for more letters of a word that is already wrong.
 #include "xr/simulated/files/toml_guard.h"
 
 #include <vector>
@@ -15,7 +15,7 @@ constexpr int kMostParts = 64;
 // Follows a text outside of its quotes and comments.
 class Place {
 public:
-    // True if a text in quotes may begin here.
+    // True if a string in quotes may begin here.
     [[nodiscard]] bool beginsText() const { return begins_; }
 
     void pass(char letter) {

@@ -1,5 +1,5 @@
-// Guards against TOML that crashes the library that reads it, toml++ 3.1 to 3.4. Whoever parses with it must
-// call this first.
+// Guards against TOML that crashes the library that reads it, toml++ 3.1 to 3.4. Call this before parsing
+// anything with it.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ struct UnreadableToml {
     std::string problem;  // what is wrong and what is expected
 };
 
-// The first of: a key of more than 64 parts; a letter outside of ASCII that is neither in quotes nor in a
-// comment; quotes where no key and no value begins; a text over several lines. None of them: nullopt, and
-// toml++ may have the text, be it TOML or not.
+// The first of: a key of more than 64 parts; a letter outside ASCII that is neither in quotes nor in a
+// comment; quotes where no key and no value begins; a string of several lines. If there is none, nullopt:
+// toml++ may be given the text, whether it is TOML or not.
 std::optional<UnreadableToml> findUnreadableToml(std::string_view text);
 
 }  // namespace files

@@ -1,5 +1,5 @@
-// A hand of usual size: lengths in metres, in the axes of its wrist (x right, y out of the back of the hand,
-// -z to the fingertips). They are for the right hand; the left is its mirror image.
+// A hand of average size: lengths in metres, in the axes of its wrist (x right, y out of the back of the
+// hand, -z to the fingertips). They are for the right hand; the left is its mirror image.
 #include "xr/simulated/script/hand_model.h"
 
 #include <glm/mat3x3.hpp>

@@ -84,7 +84,7 @@ const char* nameOf(ScriptEvent::Kind kind) {
 Script::Script() {
     stage_from_head = Track<Pose>(Pose{{1.0, 0.0, 0.0, 0.0}, {0.0, 1.6, 0.0}});
     for (const Side side : kSides) {
-        // Forearms ahead, a little below the shoulders.
+        // The forearms point ahead, a little below the shoulders.
         const double x = side == kLeft ? -0.2 : 0.2;
         hands[side].stage_from_grip = Track<Pose>(Pose{{1.0, 0.0, 0.0, 0.0}, {x, 1.2, -0.35}});
         const double angle = glm::radians(45.0);

@@ -87,7 +87,7 @@ struct State {
 // An event that happens once, when the display time first reaches `time_s`.
 struct ScriptEvent {
     enum class Kind {
-        kRate,  // the display shows `value` frames a second
+        kRate,  // the display shows `value` frames per second
         // The next `count` xrWaitSwapchainImage calls with a finite timeout return XR_TIMEOUT_EXPIRED.
         kSlowImages,
         kRecentre,      // kNoticeSeconds later LOCAL's origin is where the head is then

@@ -68,7 +68,7 @@ void Parser::parseLine(Words& words) {
         for (const auto& [word, named] : kCommands) { known += (known.empty() ? "" : ", ") + word; }
         words.fail("{} is not a command, must be one of: {}", shown(command), known);
     }
-    // Settings may occur only once: nobody could see which of two wins.
+    // Settings may occur only once: it would not be obvious which of two wins.
     const auto& [parse, stands_once] = found->second;
     if (stands_once) { requireFirst(words, command); }
     (this->*parse)(words);

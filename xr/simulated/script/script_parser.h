@@ -1,4 +1,4 @@
-// A script on its way from text to Script: one function per command, in files by topic.
+// Turns the text of a script into a Script: one function per command, in files by topic.
 #pragma once
 
 #include "xr/simulated/script/script.h"
@@ -77,7 +77,7 @@ private:
     void parseHeadMotionLine(Words& words);
     void parseController(Words& words);
     void parseAim(Words& words);
-    // The recording's first pose lies where the head line says, facing there; its tilt is as recorded.
+    // The recording's first pose has the position and heading of the head line; its tilt is as recorded.
     void finishPoses();
 
     // script_gaze.cpp

@@ -18,8 +18,8 @@ std::string Parser::takeInputName(Words& words, Script::Hand& hand) {
 void Parser::addPress(Words& words, bool touch_only) {
     Script::Hand& hand = script_.hands[words.takeSide()];
     std::string input = takeInputName(words, hand);
-    const double from_s = words.takeTime("the time from which on");
-    const double to_s = words.takeTime("the time until which");
+    const double from_s = words.takeTime("the time at which it begins");
+    const double to_s = words.takeTime("the time at which it ends");
     if (from_s >= to_s) { words.fail("it lasts from {} to {}, must end after it begins", from_s, to_s); }
     hand.presses.push_back({std::move(input), from_s, to_s, touch_only});
 }

@@ -28,7 +28,7 @@ void Parser::parseExtension(Words& words) {
         for (const Extension& extension : kExtensions) {
             known += (known.empty() ? "" : ", ") + std::string(extension.name);
         }
-        words.fail("{} is no extension of this runtime, must be one of: {}", shown(name), known);
+        words.fail("{} is not an extension of this runtime, must be one of: {}", shown(name), known);
     }
     (void)words.takeChoice("what to do with it", {"off"});
     if (!script_.extensions_off.insert(name).second) {

@@ -1,4 +1,4 @@
-// The command for timed changes and events: `at T ...`.
+// Parses the command for timed changes and events: `at T ...`.
 #include "xr/simulated/script/script_parser.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Facts about holding the frame rate on simulated machines: a frame's cost is a function of time, budget and
-// resolution.
+// Facts about holding the frame rate on simulated machines, on which a frame's cost is a function of time,
+// budget and resolution.
 #include "app/view/governor/governor.h"
 #include "app/view/governor/splat_budget.h"
 #include "tests/suite.h"
@@ -110,9 +110,9 @@ struct Run {
     }
 };
 
-// `upheavals_s` are the times at which the load changes. 60 frames after each the settings have settled, and
-// then change at most once a second. A step up that is taken back at once counts as one change; at most so
-// many occur.
+// `upheavals_s` are the times at which the load changes. 60 frames after each, the settings have settled, and
+// then change at most once a second. A step up that is taken back at once counts as one change; there are at
+// most this many.
 void checkCalm(const Run& run, const std::vector<double>& upheavals_s, std::size_t most_taken_back = 0) {
     double last_s = -10.0;
     std::size_t taken_back = 0;
@@ -340,7 +340,7 @@ TEST_CASE(
             if (!run.last().beaten) { CHECK(run.longestLate() <= 10); }
             CHECK(run.at(6.0).settings != allOf(quality));
             CHECK(run.says(" and missed displays", 6.0));
-            // Higher settings are tried rarely, and each time more rarely.
+            // Higher settings are tried rarely, and more and more rarely.
             CHECK(run.changes(8.0).size() <= 16);
         }
     }
@@ -369,8 +369,8 @@ TEST_CASE(
     CHECK(lowered > 20);
     CHECK(lowered < 100);
     CHECK(run.changes(1.0).size() <= 8);  // three steps down and all the way back, twice
-    // Once these misses are over, the message goes and misses count again: the next ones come from a load
-    // that the device's own times do not show.
+    // Once these misses are over, the message disappears and misses count again: the next ones come from a
+    // load that the device's own times do not show.
     const auto in_turn = [](double t, double gpu_ms) {
         return t < 5.0 ? lostBy(gpu_ms, 12.0) : t < 7.0 ? 0.0 : lostBy(gpu_ms, 6.0);
     };
@@ -380,8 +380,8 @@ TEST_CASE(
     CHECK(again.at(6.9).settings.resolution_scale == 1.0);
     CHECK(again.at(9.0).settings.resolution_scale < 1.0);
     CHECK(again.at(9.0).lost_periods == 0.0);
-    // A spike just when displays begin to be missed does not make the lowest settings look better than the
-    // best ones.
+    // A spike at the moment when displays begin to be missed does not make the lowest settings look better
+    // than the best ones.
     std::size_t frame = 0;
     const Run spike({.seconds = 10.0, .lost = [&](double, double) {
                          return ++frame == 50 ? 6.0 : frame > 50 ? 1.0 : 0.0;

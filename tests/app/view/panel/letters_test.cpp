@@ -1,10 +1,10 @@
-// Facts about the panel's letters: it can show names in any script.
+// Facts about the panel's letters: the panel can show names in any script.
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
 
 SUITE(letters) {
 
-// Where the vector font is, if this machine has it.
+// Where the vector font is, if this machine has one.
 std::string vectorFont() {
     for (const fs::path& file : fontFiles()) {
         if (fs::exists(file)) { return textIn(file); }
@@ -144,7 +144,7 @@ TEST_CASE(
     REQUIRE(twice.size() == 2);
     CHECK(twice[0] != twice[1]);  // one joins to the right, the other to the left
     CHECK(std::ranges::find(twice, alone[0]) == twice.end());
-    // Alef joins to nothing after it; the next letter stands at its left.
+    // Alef does not join to the letter after it; that letter is to its left.
     CHECK(of(alef + beh) == std::vector{alone[0], of(alef).at(0)});
     // Salam, with one glyph for lam and alef.
     CHECK(of("\xd8\xb3\xd9\x84\xd8\xa7\xd9\x85").size() == 3);
@@ -152,7 +152,7 @@ TEST_CASE(
         MESSAGE("skipped: no font of Devanagari is installed");
         return;
     }
-    // The vowel sign i stands before the letter after which it is read, and three letters form one glyph.
+    // The vowel sign i is drawn before the letter after which it is read, and three letters form one glyph.
     REQUIRE(of(hi).size() == 2);
     CHECK(of(hi)[1] == of(ha).at(0));
     CHECK(of(ksha).size() == 1);

@@ -1,4 +1,4 @@
-// The viewer's panel without a device: what it would draw, where its widgets lie, and what a click on them
+// The viewer's panel without a device: what it would draw, where its widgets are, and what a click on them
 // does.
 #pragma once
 
@@ -48,7 +48,7 @@ public:
         ImGui::Render();
         return requests;
     }
-    // As the viewer does beside its frames; false if there were no new letters.
+    // As the viewer does alongside its frames; false if there were no new letters.
     bool bringLetters(const std::string& text, const std::vector<ScenePicture>& shown = {}) {
         if (!font->want(text, shown)) { return false; }
         font->build();

@@ -241,7 +241,7 @@ TEST_CASE_FIXTURE(
     CHECK(click("Play").play);
     CHECK(click("Step on").frame_step == 1);
     CHECK(click("Step back").frame_step == -1);
-    // The ends of the handle's way are those of the line.
+    // The handle moves from one end of the line to the other.
     glm::dvec2 place = draw().places.at("frame");
     place.x = 0.5 * kPanelPx.x;
     draw(&place);
@@ -459,7 +459,7 @@ TEST_CASE(
     sketch.status.files = std::string("reading ") + first->name();
     CHECK(sketch.draw().places == quiet);
     CHECK(drawnVertices() > without);
-    // Whoever moves on before the first list arrives sees only the second.
+    // Someone who moves on before the first list arrives sees only the second.
     chooser.showFolder((work.path / "inner").string());
     const std::optional<SceneListWish> second = chooser.takeWish();
     REQUIRE(second.has_value());

@@ -287,7 +287,7 @@ TEST_CASE("what the panel is set to survives its file") {
     ViewSettings read = readViewSettings(view, {});
     read.stereo = runOptions(stereo).stereo;
     CHECK(describeChange(settings, read) == "");
-    // In nearly every frame nothing has changed; to find that out, no text is written.
+    // In nearly every frame nothing has changed; no text is written to find that out.
     CHECK(settings == ViewSettings(settings));
     REQUIRE(read.scene_from_room.has_value());
     checkNear(read.scene_from_room->position, kSome.position);

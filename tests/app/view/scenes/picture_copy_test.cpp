@@ -1,4 +1,4 @@
-// Facts about the copy of a frame's picture: it is there three frames later, and shows what the view saw.
+// Facts about the copy of a frame's picture: it is available three frames later, and shows what the view saw.
 #include "app/view/scenes/picture_copy.h"
 #include "app/scores/metrics.h"
 #include "engine/picture/turned.h"

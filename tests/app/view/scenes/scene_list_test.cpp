@@ -22,7 +22,7 @@
 
 SUITE(scene_list) {
 
-// A user of our own, with scenes.
+// A user of the test's own, with scenes.
 struct Home : Workplace {
     Home() { setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1); }
     ~Home() { unsetenv("XDG_CONFIG_HOME"); }
@@ -100,7 +100,7 @@ TEST_CASE_FIXTURE(Home, "what cannot be opened is listed with the reason, and no
 
 TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
     CHECK(listFolder("/").above.empty());
-    // Where drives exist, they stand above their roots.
+    // Where drives exist, they are listed above their roots.
     const Home work;
     const std::vector<fs::path> drives{"/", work.path};
     CHECK(these(listFolder("/", drives).above, listFolder(work.path.string(), drives).above) ==

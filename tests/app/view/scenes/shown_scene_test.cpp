@@ -331,7 +331,7 @@ TEST_CASE_FIXTURE(Shown,
     scenes.begin(more);
     CHECK(scenes.take(state) ==
           options.scene + " and " + more +
-              " do not fit into the device's memory together: the first one goes first");
+              " do not fit into the device's memory together: the first one is removed first");
     CHECK(scenes.get() == nullptr);
     CHECK(scenes.name() == more);
     CHECK(scenes.take(state).empty());

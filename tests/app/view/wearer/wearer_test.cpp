@@ -1,5 +1,5 @@
-// Facts about the wearer without a headset: who points, where a throw lands, how sticks move and turn, where
-// the eyes are assumed to look.
+// Facts about the wearer without a headset: which hand points, where a throw lands, how sticks move and turn
+// the wearer, where the eyes are assumed to look.
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/teleport.h"
 #include "app/view/wearer/wearer_controls.h"
@@ -234,7 +234,7 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
           these(doctest::Approx(1.6), doctest::Approx(0.2),
                 doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)), kArcPieces * kPointsOfPiece + 1));
     CHECK(glm::distance(level.arc.points.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
-    // Aimed upwards it flies farther; aimed at one's feet it does not fly at all.
+    // Aimed upwards, it flies farther; aimed at the wearer's feet, it does not fly at all.
     const auto reach = [](double up_rad) {
         const TeleportAim aim =
             aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
@@ -415,7 +415,7 @@ TEST_CASE(
     // From now on the gaze follows at once.
     gazes = follower.update(glm::dvec3(0.0, 0.0, 1.0), kEyes, kLensClear, kStep);
     CHECK(angleBetween(gazes[kRight]->direction, {0.0, 0.0, 1.0}) < 1e-6);
-    // No sharper than without a tracker.
+    // Not sharper than without a tracker.
     CHECK(follower.update(kAside, kEyes, 0.05, kStep)[kLeft]->clear_rad == doctest::Approx(0.05));
 }
 

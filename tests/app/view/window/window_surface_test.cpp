@@ -1,4 +1,4 @@
-// Facts about which of a display's offers a window takes.
+// Facts about which of a display's offers a window accepts.
 #include "app/view/window/window_surface.h"
 #include "tests/suite.h"
 

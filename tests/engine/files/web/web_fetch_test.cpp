@@ -1,5 +1,5 @@
-// Servers that are busy, break off, lie, redirect or vanish: the scene loads anyway, or one plain line says
-// why not and nothing is left behind.
+// Servers that are busy, break off, lie, redirect or disappear: the scene loads anyway, or one plain line
+// says why not and nothing is left behind.
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/web/web_runs.h"
 
@@ -22,7 +22,7 @@ WebAnswer partOf(const std::string& whole, std::size_t from, std::size_t end, co
                   whole.substr(from, end - from));
 }
 
-// Like a server that does not know the file's length, or states another one.
+// Like a server that does not know the file's length, or states a different one.
 WebAnswer withLength(const std::string& header, const std::string& body) {
     return {fmt::format("HTTP/1.1 200 OK\r\n{}\r\n{}", header, body), WebAnswer::Then::kClose};
 }
@@ -80,8 +80,7 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
         // A server that sends the whole file, of this version or another.
         {"\"1\"", whole("ETag: \"1\"\r\n"), {" ", asks}},
         {"\"1\"", whole("ETag: \"2\"\r\n"), {" ", asks}},
-        // What is sent is not the rest, or belongs to another version: the whole file is
-        // requested.
+        // If what is sent is not the rest, or belongs to another version, the whole file is requested.
         {"\"1\"", rest(half, "\"2\""), {" ", asks, " "}},
         {"\"1\"", rest(half + 1, "\"1\""), {" ", asks, " "}},
         {"\"1\"", rest(0, "\"1\""), {" ", asks, " "}},
@@ -174,7 +173,7 @@ TEST_CASE("a file that is not there, not for everybody, empty or no scene is ref
           "may not be read (the server answers 403), expected an address that anybody may read");
     CHECK(errorOf(answer("204 No Content")).starts_with("cannot be fetched (the server answers 204)"));
     CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be fetched (the server answers 304)"));
-    // Whatever comes with the answer, and however much.
+    // Whatever comes with the answer, and however much of it.
     CHECK(errorOf(answer("404 Not Found", "", std::string(1 << 20, 'x'))).starts_with("is not there"));
     CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be fetched ("));
     const Folder folder;
@@ -206,7 +205,7 @@ TEST_CASE("what a server says of a file's length is not believed") {
     CHECK(errorOf(withLength(chunked, chunk.substr(0, chunk.find('\n') + 1 + 300)), webSettings, 4)
               .starts_with("was cut off after 300 bytes"));
 
-    // Shorter: the scene ends early, whoever is to blame.
+    // Shorter: the scene ends early, whatever the cause.
     const Folder folder;
     const WebServer server([](const WebRequest&) {
         return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly);

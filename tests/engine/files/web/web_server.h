@@ -1,4 +1,4 @@
-// A small HTTP server on the loopback address, as well or as badly behaved as a test wants.
+// A small HTTP server on the loopback address that behaves as well or as badly as a test wants.
 #pragma once
 
 #include "tests/suite.h"
@@ -84,7 +84,7 @@ public:
         return connections_.size();
     }
 
-    // From now on nothing listens there; requests in progress continue. A handler may call it, too.
+    // From now on nothing listens there; requests in progress continue. Handlers may also call this.
     void refuse() { ::shutdown(listener_, SHUT_RDWR); }
 
     // Ends everything.

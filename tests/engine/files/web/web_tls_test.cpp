@@ -1,5 +1,5 @@
-// A foreign server, over TLS: whose certificate is trusted, and how many connections the files of a scene
-// take.
+// Someone else's server, over TLS: whose certificates are trusted, and how many connections the files of a
+// scene take.
 #include "tests/engine/files/sog_scenes.h"
 #include "tests/engine/files/web/web_runs.h"
 #include "tests/xr/simulated/installed.h"
@@ -8,7 +8,7 @@
 
 SUITE(web_tls) {
 
-// A program that runs beside the test, for a minute at most.
+// A program that runs alongside the test, for a minute at most.
 class Beside {
 public:
     Beside(const Folder& folder, const std::string& command)
@@ -41,7 +41,7 @@ private:
     pid_t pid_ = 0;
 };
 
-// A port for another program to listen on: it was free a moment ago.
+// A port for another program to listen on, which was free a moment ago.
 int freePort() {
     const std::string address = WebServer(WebPages()).at("");
     return std::stoi(address.substr(address.rfind(':') + 1));

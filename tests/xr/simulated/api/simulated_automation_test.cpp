@@ -48,7 +48,7 @@ struct AutomationFixture : SessionFixture {
     }
 };
 
-// A space for the pose that is bound for both hands, which names neither.
+// A space for the pose that is bound for both hands, without naming one.
 struct EitherHandFixture : AutomationFixture {
     XrSpace space = makeActionSpace(grip);
 

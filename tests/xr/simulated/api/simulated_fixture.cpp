@@ -172,7 +172,7 @@ VulkanFixture::VulkanFixture(const std::string& script, const Extensions& more_e
 }
 
 VulkanFixture::~VulkanFixture() {
-    // OpenXR's objects go first: they hold images of this device.
+    // OpenXR's objects are destroyed first, since they hold images of this device.
     XR(xrDestroyInstance)(std::exchange(instance, XR_NULL_HANDLE));
     if (own != nullptr) { own->endDevice(); }
     for (const std::string& message : std::exchange(used.messages, {})) { FAIL_CHECK(message); }

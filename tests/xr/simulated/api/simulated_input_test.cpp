@@ -232,7 +232,7 @@ TEST_CASE_FIXTURE(
     REQUIRE(sync(set) == XR_SUCCESS);
     CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync) ==
           these(XR_FALSE, XR_TRUE));
-    // A set that is not synced is inactive, and so is a hand that is not included.
+    // A set that is not synchronized is inactive, and so is a hand that is not included.
     REQUIRE(sync(set, left) == XR_SUCCESS);
     CHECK(these(number(pull, left).isActive, number(pull, right).isActive) == these(XR_TRUE, XR_FALSE));
     CHECK(sync() == XR_SUCCESS);

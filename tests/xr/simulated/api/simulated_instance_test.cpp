@@ -228,7 +228,7 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
     CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_SUCCESS);
     CHECK_FALSE(std::filesystem::exists(picture));
     CHECK(std::filesystem::file_size(log) == 0);
-    // A log that belongs to somebody else, here behind a link.
+    // A log that belongs to someone else, here behind a link.
     std::ofstream(headset.folder / "victim") << "keep me";
     std::filesystem::remove(log);
     std::filesystem::create_symlink(headset.folder / "victim", log);

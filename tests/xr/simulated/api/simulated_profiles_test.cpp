@@ -162,9 +162,9 @@ std::vector<Binding> bindingsIn(const char* lines) {
     return bindings;
 }
 
-// Paths of the core, of nobody, and of extensions, some of which became part of 1.1. The palm's surface is
-// grip_surface in 1.1 and palm_ext in an extension. Finger tips are poses of every hand, gestures exist only
-// in the hands' profile, and the eyes' profile has a gaze and nothing else.
+// Paths of the core, paths that nothing defines, and paths of extensions, some of which became part of 1.1.
+// The palm's surface is grip_surface in 1.1 and palm_ext in an extension. Finger tips are poses of every
+// hand, gestures exist only in the hands' profile, and the eyes' profile has a gaze and nothing else.
 constexpr const char* kBindings =
     R"(1.0 - khr/simple_controller hand/left/input/select/click hand/right/output/haptic
 1.0 - google/daydream_controller hand/left/input/trackpad/touch

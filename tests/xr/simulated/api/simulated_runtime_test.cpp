@@ -1,5 +1,5 @@
-// A program that was not written for the simulated runtime, Khronos's hello_xr: what it does and sees there,
-// also when the session is lost, and that runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1
+// A program that was not written for the simulated runtime, Khronos's hello_xr: what it does and sees on it,
+// also when the session is lost, and whether runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1
 // writes a new golden picture.
 #include "tests/shared_data.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"

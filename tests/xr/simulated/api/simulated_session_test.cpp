@@ -30,7 +30,7 @@ struct Begun : SessionFixture {
 struct Leaving : Begun {
     Leaving() : Begun("rate 100\nat 0.1 exit") {}
 
-    // Waits for frames and passes their times on, until the session should stop.
+    // Waits for frames and passes on their times, until the session should stop.
     template <class Body>
     States runOn(const Body& body) const {
         States seen;
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(
     CHECK(begin() == XR_SUCCESS);
     CHECK(begin() == XR_ERROR_SESSION_RUNNING);
 
-    // Frames are to be drawn from VISIBLE on; in lock-step, a frame lasts one period.
+    // Frames should be drawn from VISIBLE on; in lock-step, a frame lasts one period.
     state = frame();
     CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) ==
           these(XR_FALSE, 11'111'111, kStart));

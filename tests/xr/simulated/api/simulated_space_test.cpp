@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(WalkingFixture,
     CHECK(location.pose.orientation.y == doctest::Approx(std::sin(M_PI / 8)));
     CHECK(these(velocity.velocityFlags, velocity.linearVelocity.z, velocity.angularVelocity.y) ==
           these(kMoving, doctest::Approx(-1), doctest::Approx(M_PI / 4).epsilon(1e-3)));
-    // LOCAL starts where the head was, so seen from the head it moves the opposite way.
+    // LOCAL starts where the head was, so relative to the head it moves the opposite way.
     checkNear(locate(view, local, kStart).pose.position, {0, 0, 0});
     CHECK(locate(view, view, kStart).pose.orientation.w == doctest::Approx(1));
 

@@ -1,5 +1,5 @@
-// Facts about the way from an application's swapchain images through the runtime to the wearer's eyes, pixel
-// by pixel.
+// Facts about how an application's swapchain images get through the runtime to the wearer's eyes, pixel by
+// pixel.
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"
@@ -23,7 +23,7 @@ constexpr Rgb kBlackSeen{0, 0, 0}, kRedSeen{255, 0, 0}, kGreenSeen{0, 255, 0}, k
 
 int encoded(double linear) { return static_cast<int>(std::lround(255.0 * simulated::encodeSrgb(linear))); }
 
-// Both eyes at one place, looking where the script says; the last picture is read back.
+// Both eyes in the same place, looking where the script says; the last picture is read back.
 struct Wearer : SessionFixture {
     Painter painter{*this};
 
