@@ -7,11 +7,11 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 
-void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
+void loadSplat(uint slot, uint lanes_in_subgroup, uint place, uvec2 tile_px, bool is_coarse) {
     const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
     const float low_pass =
         pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
-    const ProjectedSplat splat = pass.splats.at[rank];
+    const ProjectedSplat splat = pass.splats.at[place];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
     // Relative to the tile, single precision places the centre to 1e-6 px.
@@ -54,7 +54,8 @@ void loadBatch(uint lanes, uint begin, uint first_slot, uint splats, uvec2 tile_
     uint i = is_coarse ? indexInCell() : gl_SubgroupID * lanes + gl_SubgroupInvocationID;
     if (i >= splats) { return; }
     [[dont_unroll]] do {
-        loadSplat(first_slot + i, lanes, pass.ranks.at[begin + i], tile_px, is_coarse);
+        const uint rank = rankOfPair(pass.ranks.at[begin + i], pass.rank_bits);
+        loadSplat(first_slot + i, lanes, gl_WorkGroupID.z * pass.splats_apart + rank, tile_px, is_coarse);
         i += is_coarse ? kThreadsPerCell : kThreads;
     }
     while (i < splats)
