@@ -33,15 +33,18 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
     return median(ratios);
 }
 
-// The time to reproject a tile, in units of the affiliated eye's rendering time per pair of tile and splat.
+// The time to reproject a tile, in units of the affiliated eye's rendering time per pair of tile and splat,
+// or of both eyes' if they are rendered at once.
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
     const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
     if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
-    const auto pairs = static_cast<double>(
-        counterOf(*shared, shared->dominant == kLeft ? "tile_pairs_right" : "tile_pairs_left"));
+    const std::uint64_t left = counterOf(*shared, "tile_pairs_left"),
+                        right = counterOf(*shared, "tile_pairs_right");
+    const NamedTimes stages = stagesOf(Mode::kShared, shared->pass_ms);
+    const std::optional<double> both_ms = sumOf(stages, "both eyes");
+    const auto pairs = static_cast<double>(both_ms ? left + right : shared->dominant == kLeft ? right : left);
     const double pair_ms =
-        pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated").value_or(0.0) / pairs
-                    : 0.0;
+        pairs > 0.0 ? (both_ms ? both_ms : sumOf(stages, "affiliated")).value_or(0.0) / pairs : 0.0;
     if (!(pair_ms > 0.0)) { return std::nullopt; }
     return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection").value_or(0.0) /
            static_cast<double>(moved) / pair_ms;

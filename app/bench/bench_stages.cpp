@@ -21,6 +21,7 @@ std::string columnOf(std::optional<Mode> mode, const PassLabel& label) {
             break;
     }
     if (mode == Mode::kTemporal) { return "patch"; }
+    if (label.role == Role::kBoth) { return "both eyes"; }
     if (label.role != Role::kAffiliated) { return "dominant"; }
     return mode && rendersBothInFull(*mode) ? "affiliated" : "patch";
 }

@@ -79,7 +79,7 @@ def headsets(frames):
 
 def stages(frames):
     rows = next(iter(frames.values()))
-    columns = ["cull+sort ms", "dominant ms", "reprojection ms", "ROI choice ms", "patch ms", "affiliated ms"]
+    columns = ["cull+sort ms", "dominant ms", "both eyes ms", "reprojection ms", "ROI choice ms", "patch ms", "affiliated ms"]
     table(["stage", *(r["method"] for r in rows)],
           ([c.removesuffix(" ms"), *(f"{number(r, c):.1f}" if number(r, c) else "" for r in rows)] for c in columns))
 

@@ -20,6 +20,10 @@ constexpr double kRoomMade = 1.5;
 
 bool isEmptied(const gpu::ListState& list) { return list.needed != list.count; }
 
+std::uint64_t colourBytes(glm::uvec2 size_px, const Kept& kept) {
+    return std::uint64_t{size_px.x} * size_px.y * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4));
+}
+
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.history || target.from_history_later) {
         return {.size_px = target.eye.size_px,
@@ -98,12 +102,37 @@ void FrameRoom::fitWarps(const FramePlan& plan) {
     }
 }
 
+void FrameRoom::joinColours(const FramePlan& plan) {
+    std::uint64_t bytes = 0, apart = 0;
+    if (plan.isSortedInBothPictures()) {
+        bytes = colourBytes(plan.targets[0].eye.size_px, plan.targets[0].kept);
+        const std::uint64_t step = Buffer::alignmentOf(context_);
+        apart = (bytes + step - 1) / step * step;
+        if (apart + bytes > context_.maxAllocationBytes()) { bytes = apart = 0; }
+    }
+    if (both_colours_.bytes() == apart + bytes) { return; }
+    wait_for_frames_();
+    for (std::size_t e = 0; e < kMostTargets; ++e) { pictures_[e].colours = {}; }
+    both_colours_ = {};
+    if (bytes == 0) { return; }
+    both_colours_ = Buffer(context_, "colours of both eyes", apart + bytes);
+    for (std::size_t e = 0; e < kMostTargets; ++e) {
+        pictures_[e].colours = Buffer(context_, "colours", bytes, both_colours_, e * apart);
+    }
+}
+
+EmptyPictures FrameRoom::emptyPictures(const FramePlan& plan, const TargetPlan& target) const {
+    if (!plan.isSortedInPicture(target)) { return {}; }
+    const Buffer& memory = plan.isSortedInBothPictures() ? both_colours_ : picture(target.picture).colours;
+    return {memory.address<gpu::uint>(), memory.bytes()};
+}
+
 void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept) {
     const glm::uvec2 tiles = tilesOf(size_px);
     const std::uint64_t pixels = std::uint64_t{size_px.x} * size_px.y;
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
-    resize(picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
+    resize(picture.colours, "colours", colourBytes(size_px, kept));
     resize(picture.depths, "depths", kept.depth && !kept.history ? pixels * sizeof(float) : 0);
     resize(picture.words, "depths of the history", kept.history ? pixels * sizeof(gpu::uint) : 0);
     resize(picture.tiles, "tiles of the history",
@@ -136,6 +165,7 @@ void FrameRoom::fitPictures(const FramePlan& plan,
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
         if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
     }
+    joinColours(plan);
     // The histories of both eyes have memory for what either leaves, since they change places.
     bool coarse = false;
     for (const TargetPlan& target : plan.targets) {
@@ -148,9 +178,9 @@ void FrameRoom::fitPictures(const FramePlan& plan,
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(moments_, "inverse depth moments", moments_bytes);
-    const auto shares = static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead));
+    const auto at_once = static_cast<std::uint64_t>(std::max(plan.at_once, plan.at_once_ahead));
     resize(lists_.tile_ranges, "tile ranges",
-           most_tiles * std::max(shares * sizeof(gpu::uvec2), coarse ? sizeof(gpu::uvec3) : 0));
+           most_tiles * std::max(at_once * sizeof(gpu::uvec2), coarse ? sizeof(gpu::uvec3) : 0));
     fitWarps(plan);
 }
 
@@ -178,12 +208,22 @@ double FrameRoom::spareFor(double ahead) const {
     return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
 }
 
+std::uint32_t FrameRoom::roomForSplats(const FramePlan& plan, std::uint32_t splats) const {
+    return std::max(
+        VisibleBuffers::capacityFor(splats, plan.at_once, emptyPictures(plan, plan.targets[0]).bytes),
+        VisibleBuffers::capacityFor(splats, plan.at_once_ahead, 0));
+}
+
 std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs,
-                                      bool is_ahead) const {
+                                      std::uint32_t visible, bool is_ahead) const {
+    const std::uint64_t empty_bytes = emptyPictures(plan, target).bytes;
+    // In the next frame tiles may be numbered through more pictures, and pairs take more words.
+    const auto more = static_cast<gpu::uint>(std::max(plan.at_once_ahead / plan.at_once, 1));
+    const PairFormat format(
+        more * plan.tilesWith(target),
+        std::min(VisibleBuffers::splatsIn(visible, plan.at_once, empty_bytes), scene_->splatCount()));
     // Once moving pays again, patches are sorted in the lists alone.
-    return plan.isSortedInPicture(target) && !(is_ahead && target.warp)
-               ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs)
-               : pairs;
+    return PairBuffers::capacityFor(format, pairs, is_ahead && target.warp ? 0 : empty_bytes);
 }
 
 FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead,
@@ -200,18 +240,12 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
-    // Each picture that is rendered at the same time as others has its own part of the lists of splats; the
-    // same holds in the next frame, whose pictures show no more splats than these.
-    const auto ofAll = [](std::uint32_t needed, int shares) {
-        return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) *
-               static_cast<std::uint32_t>(shares);
+    // Of the next frame, too, whose pictures meet no more splats than these.
+    const auto roomOfSplats = [&](std::uint32_t of) {
+        return roomForSplats(plan, std::min(of, std::max(scene_->splatCount(), 1u)));
     };
-    const int lists = std::max(plan.shares(), plan.shares_ahead);
     for (const gpu::ListState& visible : state.visible) {
-        const std::uint32_t most = std::max(ofAll(scene_->splatCount(), lists), 1u);
-        wanted.visible =
-            std::max(wanted.visible,
-                     std::min(enough(ofAll(visible.needed, lists), now.visible, std::identity{}), most));
+        wanted.visible = std::max(wanted.visible, enough(visible.needed, now.visible, roomOfSplats));
     }
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
@@ -222,7 +256,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         // the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
         const auto roomOf = [&](std::uint32_t of) {
-            return roomForPairs(plan, plan.targets[t], of, ahead > 1.0);
+            return roomForPairs(plan, plan.targets[t], of, wanted.visible, ahead > 1.0);
         };
         wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs, roomOf));
     }
@@ -269,8 +303,8 @@ void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state
     const std::uint32_t all =
         std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
     FrameCapacity wanted = lists_.capacity();
-    wanted.pairs =
-        std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all, false));
+    wanted.pairs = std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all,
+                                                       wanted.visible, false));
     if (wanted != lists_.capacity()) { tryToGrow(wanted); }
 }
 

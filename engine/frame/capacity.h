@@ -70,7 +70,9 @@ public:
     [[nodiscard]] const ShownTiles& shown(int target) const {
         return shown_[static_cast<std::size_t>(target)];
     }
-    // For the scene's changes, in all pictures of a frame; made when it is first needed.
+    // Where lists of the target, and of those that are rendered with it, may lie.
+    [[nodiscard]] EmptyPictures emptyPictures(const FramePlan& plan, const TargetPlan& target) const;
+    // For the scene's changes, in all pictures of a frame: made when it is first needed.
     [[nodiscard]] const Buffer& changedRects();
     // Call this before the passes of a frame.
     void recordShown(Commands& commands);
@@ -78,12 +80,16 @@ public:
 private:
     void resize(Buffer& buffer, const char* name, std::uint64_t bytes);
     void growLists(const FrameCapacity& capacity);
+    // Colours of both eyes lie side by side where lists are in both.
+    void joinColours(const FramePlan& plan);
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
-    // The capacity of PairBuffers for this many pairs of a target.
+    // The capacity of VisibleBuffers for a list of so many, in this frame and the next.
+    [[nodiscard]] std::uint32_t roomForSplats(const FramePlan& plan, std::uint32_t splats) const;
+    // The capacity of PairBuffers for this many pairs of a target, with lists of splats of this capacity.
     [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target,
-                                             std::uint32_t pairs, bool is_ahead) const;
-    // False, with the lists as they were, if the device does not have enough memory.
+                                             std::uint32_t pairs, std::uint32_t visible, bool is_ahead) const;
+    // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
     // Capacity for `spare` times what was needed, in the lists that must grow.
     [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead,
@@ -95,6 +101,7 @@ private:
     FrameCapacity first_capacity_;
     std::function<void()> wait_for_frames_;
     FrameBuffers lists_;
+    Buffer both_colours_;
     std::array<Picture, kFramePictures> pictures_;
     Buffer moments_;
     std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others

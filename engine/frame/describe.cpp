@@ -77,7 +77,7 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
         if (!movesRows(relation.rectified, room.warp(*warped))) { state.arrivals = words.arrivals; }
         state.row_words = words.row_words;
     }
-    if (plan.shares() > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
+    if (plan.at_once > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
     state.measured = plan.measured_part;
     state.is_made = target.history ? 1 : 0;
     state.area =

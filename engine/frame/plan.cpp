@@ -21,6 +21,18 @@ void keepForWarp(Kept& source, const Warp& warp) {
         predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
 }
 
+// True if one kernel suits both eyes, and rendering both whole at once takes little more memory than one
+// after the other: if a pair fits into a word, and lists may lie in the pictures. With a history or coarse
+// tiles they may not.
+bool canRenderAtOnce(const FramePlan& plan, const FrameSettings& settings, std::uint32_t splats) {
+    const TargetPlan &left = plan.targets[0], &right = plan.targets[1];
+    const glm::uvec2 tiles = tilesOf(left.eye.size_px);
+    return plan.shares_order && !plan.keeps_history && !left.coarse &&
+           left.eye.size_px == right.eye.size_px && left.kept.cut == right.kept.cut &&
+           (left.tiles_hidden > 0) == (right.tiles_hidden > 0) && !settings.keep_moments &&
+           PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
+}
+
 }  // namespace
 
 // A picture that is neither a history nor the spare one.
@@ -56,9 +68,9 @@ void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan lis
     // A patch is too little work for a GPU: if the eyes have the same order and tiles, each stage processes
     // both eyes.
     if (plan.shares_order && plan.targets[0].eye.size_px == plan.targets[1].eye.size_px) {
-        list.eyes.shares = 2;
+        plan.at_once = list.eyes.at_once = 2;
         plan.makeList(list);
-        plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
+        plan.steps.push_back({Step::Kind::kRender, order[0]});
         return;
     }
     plan.makeList(list);
@@ -120,15 +132,19 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
 }
 
 int FramePlan::firstTarget() const {
-    const auto found = std::ranges::find_if(steps, [](const Step& step) {
-        return step.kind == Step::Kind::kRender || step.kind == Step::Kind::kRenderAll;
-    });
+    const auto found = std::ranges::find(steps, Step::Kind::kRender, &Step::kind);
     return found == steps.end() ? 0 : found->index;
 }
 
-int FramePlan::shares() const {
-    const bool at_once = std::ranges::find(steps, Step::Kind::kRenderAll, &Step::kind) != steps.end();
-    return at_once ? static_cast<int>(eyes) : 1;
+gpu::uint FramePlan::tilesWith(const TargetPlan& target) const {
+    const auto tilesIn = [](const TargetPlan& of) {
+        const glm::uvec2 tiles = tilesOf(of.eye.size_px);
+        return tiles.x * tiles.y;
+    };
+    if (at_once == 1) { return tilesIn(target); }
+    gpu::uint tiles = 0;
+    for (const TargetPlan& of : targets) { tiles += tilesIn(of); }
+    return tiles;
 }
 
 std::optional<int> FramePlan::warpedTarget() const {
@@ -157,7 +173,7 @@ Histories historiesAfter(const FramePlan& plan, const Histories& before) {
 }
 
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move,
-                    const Histories& histories) {
+                    std::uint32_t splats, const Histories& histories) {
     const bool keeps_history = hasHistory(settings.mode) && settings.keep_history;
     const bool has_history = keeps_history && histories.of_eyes[0] && histories.of_eyes[1];
     // If no history is kept, `temporal` falls back to `predicted`. If there is none, as after a jump, both
@@ -173,6 +189,12 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
           "the eyes have {}x{} and {}x{} pixels: to reproject one into the other they must be equal",
           eyes[0].size_px.x, eyes[0].size_px.y, eyes.back().size_px.x, eyes.back().size_px.y);
+    constexpr gpu::uint kMostPixels = gpu::kMostTilesAcross * gpu::kTileSize;
+    for (const Eye& eye : eyes) {
+        check(std::max(eye.size_px.x, eye.size_px.y) <= kMostPixels,
+              "a picture has {}x{} pixels, at most {} per side are possible", eye.size_px.x, eye.size_px.y,
+              kMostPixels);
+    }
     const int first = one_eye ? 0 : settings.dominant, second = 1 - first;
     // True if each eye is culled and ordered by itself.
     const bool apart = one_eye || mode == Mode::kTwoPass || mode == Mode::kAlternate ||
@@ -210,8 +232,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                        .role = plan.targets[e].role});
     };
     const auto render = [&](int e) { plan.steps.push_back({Step::Kind::kRender, e}); };
-    const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle},
-                        .role = Role::kBoth};
+    ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle},
+                  .role = Role::kBoth};
 
     if (mode == Mode::kAlternate) {
         const int full = histories.turn;
@@ -223,20 +245,23 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const EyeRelation relation = relate(eyes[first], eyes[one_eye ? first : second]);
     plan.shares_order = !one_eye && (middle || relation.same_depths);
     if (keeps_history && plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
-        plan.shares_ahead = settings.mode == Mode::kTemporal ? 2 : 1;
+        plan.at_once_ahead = settings.mode == Mode::kTemporal ? 2 : 1;
     }
     if (mode == Mode::kTemporal) {
         planTemporal(plan, settings, eyes, histories, both);
         return plan;
     }
 
+    if (mode == Mode::kShared && canRenderAtOnce(plan, settings, splats)) {
+        plan.at_once = both.eyes.at_once = 2;
+    }
     if (apart) {
         listOf(first);
     } else {
         plan.makeList(both);
     }
     render(first);
-    if (one_eye) { return plan; }
+    if (one_eye || plan.at_once > 1) { return plan; }
 
     TargetPlan &source = plan.targets[first], &target = plan.targets[second];
     if (apart) { listOf(second); }

@@ -72,9 +72,7 @@ struct Step {
         kWarp,     // warps pixels into FramePlan::targets[index] and chooses its tiles
         kHistory,  // makes FramePlan::targets[index] from its history
         kChoose,   // chooses the tiles of all targets that have one
-        kRender,   // renders the chosen tiles
-        // Renders the chosen tiles of all targets at once; their list and pairs need capacity for each.
-        kRenderAll,
+        kRender,   // renders the chosen tiles, of all targets if they are rendered at once
     };
     Kind kind;
     int index;
@@ -95,8 +93,8 @@ struct FramePlan {
     int dominant = 0;                                   // of the targets
     bool keeps_history = false;                         // later frames are made from this one
     std::optional<int> spare_picture = {};              // the room's picture for the frame after this one
-    // How many pictures that frame renders at the same time.
-    int shares_ahead = 1;
+    // How many pictures are rendered at the same time, from lists with capacity for each; and in that frame.
+    int at_once = 1, at_once_ahead = 1;
 
     // The step that makes it is the next one.
     void makeList(const ListPlan& list) {
@@ -105,13 +103,14 @@ struct FramePlan {
     }
     // The target from which others are made, or the one that is rendered in full.
     [[nodiscard]] int firstTarget() const;
-    // How many pictures are rendered at once.
-    [[nodiscard]] int shares() const;
-    // True if nothing is in the target's picture until its pairs are sorted. The frames after a history need
-    // their lists in one piece.
+    // True if nothing is in the target's picture until its pairs are sorted, or in both if they are rendered
+    // at once. The frames after a history need their lists in one piece.
     [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const {
         return target.choice == TileChoice::kAll && !keeps_history && !target.coarse;
     }
+    [[nodiscard]] bool isSortedInBothPictures() const { return at_once > 1 && isSortedInPicture(targets[0]); }
+    // The tiles of the target and of those that are rendered with it.
+    [[nodiscard]] gpu::uint tilesWith(const TargetPlan& target) const;
     // The first target that is made from another.
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };
@@ -121,10 +120,11 @@ struct FramePlan {
 [[nodiscard]] bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes);
 
 // The only place that knows what a mode does. Throws Error if eyes that are made from one another have
-// different sizes. `may_move`: warping paid in the frame before, or that is unknown. `histories`: the
-// histories that earlier frames have left; their pictures may have other sizes.
+// different sizes, or if one is larger than any can be. `may_move`: warping paid in the frame before, or that
+// is unknown. `splats`: the most that the scene can show. `histories`: the histories that earlier frames have
+// left; their pictures may have other sizes.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move,
-                    const Histories& histories = {});
+                    std::uint32_t splats, const Histories& histories = {});
 // What such a frame leaves to the next one.
 Histories historiesAfter(const FramePlan& plan, const Histories& before);
 

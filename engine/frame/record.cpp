@@ -2,10 +2,11 @@
 // (planTemporal in plan.cpp):
 //
 //   kHistory    for each eye: what its last picture shows of the new one, and the error to expect of each
-//               tile (recordFromHistory)
+//   tile
+//               (recordFromHistory)
 //   kChoose     the tiles of both that are rendered again (recordChoice)
 //   kList       the splats that touch these, front to back (recordCull, recordOrder)
-//   kRenderAll  the chosen tiles, and what the next frame is told about them (recordPictures)
+//   kRender     the chosen tiles, and what the next frame is told of them (recordPictures)
 //
 // Before them the device is told where everything lies (describe.cpp), and after them it reports what it did
 // (report.cpp).
@@ -40,7 +41,7 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
         switch (step.kind) {
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
-                const EyesOfList eyes = eyesOf(list);
+                const EyesOfList eyes = eyesOf(plan, list);
                 if (list.culls) { recordCull(kernels, commands, scene, room.lists(), eyes, list.role); }
                 recordOrder(kernels, commands, scene, room.lists(), eyes, list.role);
                 break;
@@ -55,10 +56,7 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
                 recordChoice(commands, plan);
                 break;
             case Step::Kind::kRender:
-                recordPictures(commands, plan, step.index, 1);
-                break;
-            case Step::Kind::kRenderAll:
-                recordPictures(commands, plan, 0, static_cast<int>(plan.targets.size()));
+                recordPictures(commands, plan, step.index);
                 break;
         }
     }
@@ -103,13 +101,15 @@ HistoryInputs FrameRecorder::historyOf(const FramePlan& plan, int index) const {
 
 void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) const {
     std::vector<HistoryInputs> eyes;
+    gpu::uint most_pairs = gpu::kMaxItems;
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
         if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kHistory) {
             eyes.push_back(historyOf(plan, t));
+            most_pairs = std::min(most_pairs, pairsOf(room.lists(), targetsOf(plan, t)).capacity);
         }
     }
     recordChanged(commands, plan, eyes);
-    binosplat::recordChoice(kernels, commands, eyes, static_cast<gpu::uint>(plan.shares()));
+    binosplat::recordChoice(kernels, commands, eyes, static_cast<gpu::uint>(plan.at_once), most_pairs);
 }
 
 void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan,
@@ -136,8 +136,9 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan,
     }
 }
 
-EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
+EyesOfList FrameRecorder::eyesOf(const FramePlan& plan, const ListPlan& list) const {
     EyesOfList eyes = list.eyes;
+    eyes.empty = room.emptyPictures(plan, plan.targets[static_cast<std::size_t>(eyes.first)]);
     if (list.of_chosen) {
         eyes.first_mask = room.warp(eyes.first).tileMask();
         eyes.last_mask = room.warp(eyes.first + eyes.count - 1).tileMask();
@@ -145,12 +146,13 @@ EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
     return eyes;
 }
 
-void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, int first, int count) const {
+Targets FrameRecorder::targetsOf(const FramePlan& plan, int index) const {
+    const int count = plan.at_once, first = count > 1 ? 0 : index;
     const TargetPlan& planned = plan.targets[static_cast<std::size_t>(first)];
     Targets targets{.first = first,
                     .count = count,
                     .list = planned.list,
-                    .pairs = {},
+                    .empty = room.emptyPictures(plan, planned),
                     .background = glm::vec3(plan.background),
                     .kept = planned.kept,
                     .coarse = planned.coarse,
@@ -159,17 +161,19 @@ void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, in
     for (int t = first; t < first + count; ++t) {
         const glm::uvec2 tiles = tilesOf(plan.targets[static_cast<std::size_t>(t)].eye.size_px);
         targets.size_tiles = glm::max(targets.size_tiles, tiles);
-        targets.all_tiles += tiles.x * tiles.y;
+        // Where only one of them keeps its depth, the other has no memory for it.
+        targets.kept.depth = targets.kept.depth || plan.targets[static_cast<std::size_t>(t)].kept.depth;
     }
-    const PairBuffers& pairs = room.lists().pairs;
-    targets.pairs =
-        plan.isSortedInPicture(planned)
-            ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(targets.all_tiles))
-            : pairs.arrays();
+    targets.all_tiles = plan.tilesWith(planned);
     targets.lists_chosen = std::ranges::any_of(
         plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
-    binosplat::recordPictures(kernels, commands, scene, room.lists(), targets,
-                              count > 1 ? Role::kBoth : planned.role);
+    return targets;
+}
+
+void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, int index) const {
+    binosplat::recordPictures(
+        kernels, commands, scene, room.lists(), targetsOf(plan, index),
+        plan.at_once > 1 ? Role::kBoth : plan.targets[static_cast<std::size_t>(index)].role);
 }
 
 }  // namespace binosplat

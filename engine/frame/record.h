@@ -39,9 +39,10 @@ private:
                        std::span<const HistoryInputs> pictures) const;
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
     [[nodiscard]] HistoryInputs historyOf(const FramePlan& plan, int index) const;
-    [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
-    // For `count` targets at once.
-    void recordPictures(Commands& commands, const FramePlan& plan, int first, int count) const;
+    [[nodiscard]] EyesOfList eyesOf(const FramePlan& plan, const ListPlan& list) const;
+    // The target, and those that are rendered with it.
+    [[nodiscard]] Targets targetsOf(const FramePlan& plan, int index) const;
+    void recordPictures(Commands& commands, const FramePlan& plan, int index) const;
 };
 
 }  // namespace binosplat

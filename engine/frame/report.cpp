@@ -196,7 +196,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         const Picture& picture = frame.room.picture(target.picture);
         TargetCounters& its = counters.targets.emplace_back();
         its.splats_visible = frame.state.visible[static_cast<std::size_t>(target.list)].count;
-        const gpu::ListState& pairs = frame.state.targets[frame.plan.shares() > 1 ? 0 : t].pairs;
+        const gpu::ListState& pairs = frame.state.targets[frame.plan.at_once > 1 ? 0 : t].pairs;
         its.tile_pairs = pairs.count == pairs.needed ? state.counters.pairs : 0;
         its.tiles = std::uint64_t{tiles.x} * tiles.y;
         its.tiles_hidden = target.tiles_hidden;

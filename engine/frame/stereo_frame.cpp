@@ -76,13 +76,14 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     Commands& commands = flight().commands;
     // `predicted` may find that warping does not pay.
     if (choiceOf(settings.mode) == TileChoice::kPredicted) {
-        recorder(true).record(commands, planFrame(settings, eyes, false));
+        recorder(true).record(commands, planFrame(settings, eyes, false, scene_->splatCount()));
         commands.drop();
     }
-    recorder(true).record(commands, planFrame(settings, eyes, true));
+    recorder(true).record(commands, planFrame(settings, eyes, true, scene_->splatCount()));
     commands.drop();
     if (hasHistory(settings.mode) && settings.keep_history) {
-        const FramePlan next = planFrame(settings, eyes, true, historiesAfter(plan_, {}));
+        const FramePlan next =
+            planFrame(settings, eyes, true, scene_->splatCount(), historiesAfter(plan_, {}));
         room_.fitPictures(next, settings.hidden_tiles);
         recorder(true).record(commands, next);
         commands.drop();
@@ -106,7 +107,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
 void StereoFrame::reserve(std::span<const Eye> eyes, const FrameSettings& settings) {
     if (shapeOf(eyes, settings) == shape_) { return; }
     histories_ = historiesFor(eyes, settings);
-    FramePlan plan = planFrame(settings, eyes, true, histories_);
+    FramePlan plan = planFrame(settings, eyes, true, scene_->splatCount(), histories_);
     finish();
     shape_ = {};  // some pictures are new, and some may fail
     plan_ = std::move(plan);
@@ -290,7 +291,7 @@ void StereoFrame::planAnew(const FrameSettings& settings) {
         return;
     }
     // The memory that the history was made from is overwritten already.
-    plan_ = planFrame(settings, eyes_, true);
+    plan_ = planFrame(settings, eyes_, true, scene_->splatCount());
     room_.fitPictures(plan_, settings.hidden_tiles);
 }
 
@@ -314,7 +315,7 @@ void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settin
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
     const bool may_move = moving_pays_.mayMove(asked);
     const double changed = changedShare(eyes, settings);
-    plan_ = planFrame(settings, eyes, may_move,
+    plan_ = planFrame(settings, eyes, may_move, scene_->splatCount(),
                       changed > kMostChanged ? Histories() : historiesFor(eyes, settings));
     if (changed <= kMostChanged) {
         plan_.budget = std::min(

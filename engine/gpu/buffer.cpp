@@ -23,13 +23,35 @@ vk::raii::DeviceMemory allocate(const Context& context, const vk::MemoryRequirem
     }
 }
 
+vk::raii::Buffer makeBuffer(const Context& context, std::uint64_t bytes, MemoryKind kind) {
+    using Usage = vk::BufferUsageFlagBits;
+    const auto copied = Usage::eTransferSrc | Usage::eTransferDst,
+               used = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | copied;
+    return {context.device(), vk::BufferCreateInfo({}, bytes, kind == MemoryKind::kDevice ? used : copied)};
+}
+
+std::uint64_t addressOf(const Context& context, const vk::raii::Buffer& buffer) {
+    const vk::Device device = *context.device();
+    return device.getBufferAddress(vk::BufferDeviceAddressInfo(*buffer), *context.device().getDispatcher());
+}
+
 }  // namespace
+
+Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t bytes, const Buffer& whole,
+               std::uint64_t offset_bytes)
+    : buffer_(makeBuffer(context, bytes, MemoryKind::kDevice)), context_(&context), bytes_(bytes) {
+    buffer_.bindMemory(*whole.memory_, offset_bytes);
+    context.name(buffer_, name);
+    address_ = addressOf(context, buffer_);
+}
+
+std::uint64_t Buffer::alignmentOf(const Context& context) {
+    return makeBuffer(context, 1, MemoryKind::kDevice).getMemoryRequirements().alignment;
+}
 
 Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t bytes, MemoryKind kind) {
     if (bytes == 0) { return; }
-    using Usage = vk::BufferUsageFlagBits;
     using Property = vk::MemoryPropertyFlagBits;
-    const vk::Device device = *context.device();
     const auto mebibytes = [](std::uint64_t count) { return static_cast<double>(count) / 1048576.0; };
     const std::string what =
         fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, mebibytes(bytes));
@@ -48,12 +70,7 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
                            what, mebibytes(used_bytes), mebibytes(limit_bytes)));
     }
     try {
-        const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
-                           Usage::eTransferSrc | Usage::eTransferDst;
-        buffer_ = vk::raii::Buffer(
-            context.device(),
-            vk::BufferCreateInfo(
-                {}, bytes, kind == MemoryKind::kDevice ? usage : Usage::eTransferSrc | Usage::eTransferDst));
+        buffer_ = makeBuffer(context, bytes, kind);
         const auto needs = buffer_.getMemoryRequirements();
         const bool is_mapped = kind != MemoryKind::kDevice;
         const vk::MemoryPropertyFlags wanted =
@@ -72,8 +89,7 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     context_ = &context;
     bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {
-        address_ =
-            device.getBufferAddress(vk::BufferDeviceAddressInfo(*buffer_), *context.device().getDispatcher());
+        address_ = addressOf(context, buffer_);
         MemoryUse& use = context.memoryUse();
         const std::uint64_t now = use.current_bytes += counted_bytes_;
         for (std::uint64_t peak = use.peak_bytes;

@@ -24,6 +24,10 @@ public:
     // Throws Error if the device does not have that much memory; the message calls it `name`.
     Buffer(const Context& context, const std::string& name, std::uint64_t bytes,
            MemoryKind kind = MemoryKind::kDevice);
+    // A part of `whole`, which must exist for as long. It begins at a multiple of alignmentOf.
+    Buffer(const Context& context, const std::string& name, std::uint64_t bytes, const Buffer& whole,
+           std::uint64_t offset_bytes);
+    static std::uint64_t alignmentOf(const Context& context);
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
     Buffer& operator=(Buffer&& other) noexcept;
     ~Buffer() { release(); }

@@ -78,7 +78,6 @@ void SplatMeter::record(const Eye& eye, double near, const Picture& picture) {
     targets_ = {};
     targets_.size_tiles = tilesOf(eye.size_px);
     targets_.all_tiles = targets_.size_tiles.x * targets_.size_tiles.y;
-    targets_.pairs = buffers_.pairs.arrays();
     state.targets[0].colours = picture.colours.address<gpu::vec4>();
     commands_.begin();
     commands_.update(buffers_.state, &state, sizeof(state));
@@ -94,8 +93,10 @@ bool SplatMeter::hadRoom() {
     const FrameState& state = readback_.mapped<FrameState>()[0];
     const gpu::uint needed = state.targets[0].pairs.needed;  // every splat has room
     check(needed <= gpu::kMaxItems, "the scene's splats touch too many tiles of a picture to be judged");
-    if (needed <= buffers_.pairs.capacity()) { return true; }
-    growFrameBuffers(context_, buffers_, {buffers_.visible.capacity(), roomFor(needed)});
+    if (needed <= pairsOf(buffers_, targets_).capacity) { return true; }
+    growFrameBuffers(context_, buffers_,
+                     {buffers_.visible.capacity(),
+                      PairBuffers::capacityFor(pairFormatOf(buffers_, targets_), roomFor(needed), 0)});
     return false;
 }
 

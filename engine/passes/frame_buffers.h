@@ -1,5 +1,5 @@
-// The device memory of a frame, which grows with the visible splats (60 bytes each), with the pairs (4 to 16
-// bytes each) and with the pixels.
+// The device memory of a frame: what grows with the visible splats (56 bytes each, 92 for two pictures at
+// once), with the pairs (4 to 16), with the pixels.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -47,22 +47,44 @@ struct Picture {
     glm::uvec2 size_px{0, 0};
 };
 
-// The arrays over the visible splats are in one buffer, one after another.
+// Memory of pictures that are empty until the pairs of all tiles are sorted.
+struct EmptyPictures {
+    gpu::DeviceAddress<gpu::uint> memory;
+    std::uint64_t bytes = 0;
+};
+
+// The arrays over the visible splats, front to back. Sets of tiles and splats: those of one picture after
+// those of another, if several are rendered at once.
+struct VisibleArrays {
+    std::uint32_t capacity = 0;
+    gpu::DeviceAddress<gpu::uvec2> tile_sets;
+    gpu::DeviceAddress<gpu::uint> order;  // indices into the scene
+    gpu::DeviceAddress<gpu::ProjectedSplat> splats;
+
+    // For sorting by depth, where the splats will be: begins in `unsorted`, ends in `sorted`.
+    [[nodiscard]] KeyValues sorted() const { return {words(0), order}; }
+    [[nodiscard]] KeyValues unsorted() const { return {words(1), words(2)}; }
+
+private:
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> words(std::uint64_t arrays_before) const {
+        return gpu::DeviceAddress<gpu::uint>{splats.value}.at(arrays_before * capacity);
+    }
+};
+
+// Their memory.
 class VisibleBuffers {
 public:
     VisibleBuffers() = default;
     VisibleBuffers(const Context& context, std::uint32_t capacity);
 
+    // Of splats, if pictures are rendered one by one.
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // Depth keys and splat indices; sorting begins in `spare`. Once they are sorted, the counts of tiles
-    // replace the keys, and the sets of tiles replace `spare`.
-    [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
-    [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileSets() const { return at<gpu::uvec2>(8); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(0); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const {
-        return at<gpu::ProjectedSplat>(16);
-    }
+    // For as many pictures at once. Sets of tiles are dead before any pair is sorted: those of several
+    // pictures lie in the pictures if that leaves more capacity.
+    [[nodiscard]] VisibleArrays arrays(int pictures = 1, const EmptyPictures& empty = {}) const;
+    // The capacity of those arrays in buffers of this capacity; and the other way around.
+    static std::uint32_t splatsIn(std::uint32_t capacity, int pictures, std::uint64_t empty_bytes);
+    static std::uint32_t capacityFor(std::uint32_t splats, int pictures, std::uint64_t empty_bytes);
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
     // Of the sums of tiles that project leaves for bin.
     static std::uint64_t groupSumBytes(std::uint64_t capacity) {
@@ -70,24 +92,34 @@ public:
     }
 
 private:
-    template <typename T>
-    [[nodiscard]] gpu::DeviceAddress<T> at(std::uint64_t bytes_before_per_splat) const {
-        return buffer_.address<T>(bytes_before_per_splat * capacity_);
-    }
-    static constexpr std::uint64_t kBytesPerSplat = 16 + sizeof(gpu::ProjectedSplat);
     std::uint32_t capacity_ = 0;
     Buffer buffer_;
 };
 
-// Where an eye's (tile, splat) pairs are: a sort goes back and forth between two buffers, and its result is
-// in either.
+// How many bits distinguish so many tiles, and no tile.
+unsigned tileBits(gpu::uint tiles);
+
+// How (tile, splat) pairs are stored: lib/pair_word.glsl.
+struct PairFormat {
+    unsigned rank_bits;  // 0: two words a pair
+    KeyBits tile_bits;   // by which they are sorted
+    // Of `tiles` through all pictures that are rendered at once, and a list of up to `splats`. `in_place`:
+    // once sorted, they are where they were.
+    PairFormat(gpu::uint tiles, std::uint32_t splats, bool in_place = false);
+
+    [[nodiscard]] bool fitsOneWord() const { return rank_bits > 0; }
+    // Of a pair while it is sorted.
+    [[nodiscard]] std::uint32_t words() const { return fitsOneWord() ? 2 : 4; }
+};
+
+// Where the pairs are: a sort goes from one place to the other and back, and its result is in either.
 struct PairArrays {
     KeyValues pairs, spare;
     std::uint32_t capacity = 0;
 };
 
-// Four words per pair. Only one of them outlives the sort: the splats by tile. For an eye that is rendered in
-// full, the others are in its picture, which is empty until then, as far as they fit.
+// Two or four words a pair. Only one of them outlives the sort: that with the rank. For pictures that are
+// rendered whole the others are there, as far as they fit.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
@@ -97,15 +129,14 @@ public:
 
     // Of pairs of four words.
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // The same for an eye with this many pairs if the rest is in `colours`.
-    static std::uint32_t capacityBeside(const Buffer& colours, std::uint32_t pairs);
-    [[nodiscard]] PairArrays arrays() const;
-    // For as many pairs as fit here and in `colours`, where nothing remains after a sort by `key_bits`.
-    [[nodiscard]] PairArrays arraysBeside(const Buffer& colours, unsigned key_bits) const;
+    // The same for this many pairs if the rest is in pictures.
+    static std::uint32_t capacityFor(const PairFormat& format, std::uint32_t pairs,
+                                     std::uint64_t empty_bytes);
+    // For as many pairs as fit here and in pictures.
+    [[nodiscard]] PairArrays arrays(const PairFormat& format, const EmptyPictures& empty) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
 
 private:
-    static constexpr std::uint32_t kMostWordsBeside = 3;
     std::uint32_t capacity_ = 0;
     Buffer buffer_;
 };

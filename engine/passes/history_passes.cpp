@@ -10,10 +10,6 @@ namespace {
 
 constexpr gpu::uint groupsOver(gpu::uint items, gpu::uint group) { return (items + group - 1) / group; }
 
-// A number of pairs that certainly fits if tiles cost what they did when they were last rendered. Lists grow
-// when that many are needed.
-gpu::uint mostCost(const FrameCapacity& capacity) { return capacity.pairs - capacity.pairs / 8; }
-
 }  // namespace
 
 gpu::HistoryView historyViewOf(const Eye& now, const Eye& history, double near, const glm::vec3& background) {
@@ -74,7 +70,7 @@ void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs
 }
 
 void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes,
-                  gpu::uint at_once) {
+                  gpu::uint at_once, gpu::uint most_pairs) {
     const HistoryInputs& first = eyes.front();
     const std::uint64_t target = FrameBuffers::targetField(first.index, 0);
     std::uint32_t most_tiles = 0;
@@ -96,7 +92,9 @@ void recordChoice(PassKernels& kernels, Commands& commands, std::span<const Hist
              gpu::PricePass{.targets = targets,
                             .chosen = chosen,
                             .price_bins = first.warp.bins(),
-                            .most_cost = mostCost(first.buffers.capacity())});
+                            // Surely fits, if tiles cost what they did when they were rendered last. Lists
+                            // grow when that many are needed.
+                            .most_cost = most_pairs - most_pairs / 8});
     dispatch(
         SelectKernel{.predicted = true, .history = true},
         gpu::SelectPass{.targets = targets,

@@ -39,8 +39,9 @@ void recordFromHistory(PassKernels& kernels, Commands& commands, const HistoryIn
 void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs& in,
                    gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
 // Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at
-// the same time. The first one's WarpView has the budget, a share of all eyes' work.
+// the same time. The first one's WarpView has the budget, a share of all eyes' work. `most_pairs`: the
+// capacity of their list.
 void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes,
-                  gpu::uint at_once);
+                  gpu::uint at_once, gpu::uint most_pairs);
 
 }  // namespace binosplat

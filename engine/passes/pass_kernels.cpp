@@ -25,7 +25,7 @@ bool areNarrow(const Context& context, std::uint32_t threads_per_cell) {
 
 // Kernels of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
-    KernelTable table = everyVariantOf<CullPagesKernel, BinKernel, BinLargeKernel>();
+    KernelTable table = everyVariantOf<CullPagesKernel, BinKernel>();
     append(table, everyVariant<CullKernel>([](const CullKernel& k) { return k.placed <= k.in_pages; }));
     append(table, everyVariant<CompactKernel>([](const CompactKernel& k) { return k.placed <= k.in_pages; }));
     // Scenes that are placed among others each have their own degree.

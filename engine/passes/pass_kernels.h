@@ -14,8 +14,8 @@ public:
 
     KeyValues recordSort(Commands& commands, KeyValues in, KeyValues spare,
                          gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
-                         std::uint64_t list_bytes, unsigned key_bits) {
-        return sort_.record(*this, commands, in, spare, histograms, lists, list_bytes, key_bits);
+                         std::uint64_t list_bytes, const KeyBits& bits) {
+        return sort_.record(*this, commands, in, spare, histograms, lists, list_bytes, bits);
     }
     [[nodiscard]] std::uint32_t threadsPerCell() const { return threads_per_cell_; }
     // The threads of a cell are a subgroup of eight lanes.

@@ -4,11 +4,22 @@
 #include "engine/srgb.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace binosplat {
 
-unsigned tileBits(gpu::uint tiles) { return static_cast<unsigned>(std::bit_width(tiles)); }
+VisibleArrays visibleOf(const FrameBuffers& buffers, const Targets& targets) {
+    return buffers.visible.arrays(targets.count, targets.empty);
+}
+
+PairFormat pairFormatOf(const FrameBuffers& buffers, const Targets& targets) {
+    // Sets of several pictures' tiles are in the pictures while pairs are made.
+    const bool in_place = targets.count > 1 && targets.empty.bytes > 0;
+    return {targets.all_tiles, std::min(visibleOf(buffers, targets).capacity, buffers.splat_count), in_place};
+}
+
+PairArrays pairsOf(const FrameBuffers& buffers, const Targets& targets) {
+    return buffers.pairs.arrays(pairFormatOf(buffers, targets), targets.empty);
+}
 
 namespace {
 
@@ -48,6 +59,9 @@ struct Recording {
     const GpuScene& scene;
     const FrameBuffers& buffers;
     const Targets& targets;
+    VisibleArrays splats;
+    PairFormat format;
+    PairArrays lists;
 
     [[nodiscard]] std::uint64_t field(std::uint64_t offset) const {
         return FrameBuffers::targetField(targets.first, offset);
@@ -66,27 +80,24 @@ struct Recording {
     [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
     [[nodiscard]] auto sums() const { return buffers.scratch.address<gpu::uint>(); }
     [[nodiscard]] gpu::uint count() const { return static_cast<gpu::uint>(targets.count); }
-    [[nodiscard]] gpu::uint splatsApart() const { return buffers.visible.capacity() / count(); }
     // The device lists the tiles that have pairs.
     [[nodiscard]] bool listsFull() const { return targets.chosen || targets.coarse; }
 };
 
 void recordProjected(const Recording& recording) {
     const GpuScene& scene = recording.scene;
-    const VisibleBuffers& visible = recording.buffers.visible;
     const gpu::ProjectPass project{.chunks = scene.chunks(),
                                    .eyes = recording.eyes(),
-                                   .order = visible.order().values,
+                                   .order = recording.splats.order,
                                    .visible = recording.visible(),
-                                   .splats = visible.splats(),
-                                   .tile_sets = visible.tileSets(),
-                                   .tile_counts = visible.tileCounts(),
+                                   .splats = recording.splats.splats,
+                                   .tile_sets = recording.splats.tile_sets,
                                    .group_sums = recording.sums(),
                                    .pairs = recording.pairs(),
                                    .targets = recording.states(),
                                    .chunk_bits = scene.chunkBits(),
-                                   .splats_apart = recording.splatsApart(),
-                                   .capacity = recording.targets.pairs.capacity,
+                                   .splats_apart = recording.splats.capacity,
+                                   .capacity = recording.lists.capacity,
                                    .is_dimmed = scene.traits().is_dimmed};
     const ProjectKernel kernel{
         .sh_degree = static_cast<std::uint32_t>(scene.isPlaced() ? kMaxShDegree : scene.shDegree()),
@@ -98,27 +109,21 @@ void recordProjected(const Recording& recording) {
 }
 
 void recordBinned(const Recording& recording) {
-    const VisibleBuffers& visible = recording.buffers.visible;
-    const PairArrays& pairs = recording.targets.pairs;
     const gpu::BinPass bin{.eyes = recording.eyes(),
-                           .splats = visible.splats(),
-                           .tile_sets = visible.tileSets(),
-                           .tile_counts = visible.tileCounts(),
+                           .splats = recording.splats.splats,
+                           .tile_sets = recording.splats.tile_sets,
                            .group_sums = recording.sums(),
                            .visible = recording.visible(),
                            .pairs = recording.pairs(),
-                           .tiles = pairs.pairs.keys,
-                           .ranks = pairs.pairs.values,
-                           .large_splats = pairs.spare.keys,
-                           .large_begins = pairs.spare.values,
+                           .tiles = recording.lists.pairs.keys,
+                           .ranks = recording.lists.pairs.values,
                            .targets = recording.states(),
-                           .splats_apart = recording.splatsApart(),
-                           .all_tiles = recording.targets.all_tiles};
-    recording.commands.dispatchIndirect(recording.kernels.get(BinKernel{}), bin, recording.buffers.state,
+                           .splats_apart = recording.splats.capacity,
+                           .all_tiles = recording.targets.all_tiles,
+                           .rank_bits = recording.format.rank_bits};
+    const BinKernel kernel{.splat_kind = recording.scene.splatKind()};
+    recording.commands.dispatchIndirect(recording.kernels.get(kernel), bin, recording.buffers.state,
                                         recording.visibleList() + offsetof(gpu::ListState, per_block));
-    const BinLargeKernel large{.splat_kind = recording.scene.splatKind()};
-    recording.commands.dispatch(recording.kernels.get(large), bin, gpu::kBinLargeGroups, 1,
-                                recording.count());
 }
 
 void recordTileRanges(const Recording& recording, const KeyValues& sorted) {
@@ -129,7 +134,8 @@ void recordTileRanges(const Recording& recording, const KeyValues& sorted) {
                                      .ranges = recording.ranges(),
                                      .visible = recording.visible(),
                                      .targets = recording.states(),
-                                     .background = targets.background};
+                                     .background = targets.background,
+                                     .rank_bits = recording.format.rank_bits};
     const Kernel& kernel = recording.kernels.get(
         recording.listsFull() ? TileRangesKernel{.masked = true, .half_colours = targets.kept.half_floats}
                               : TileRangesKernel{});
@@ -149,13 +155,15 @@ void recordRasterized(const Recording& recording, const KeyValues& sorted) {
     const bool is_light = recording.scene.isLight();
     const gpu::RasterizePass rasterize{
         .eyes = recording.eyes(),
-        .splats = recording.buffers.visible.splats(),
-        .ranks = sorted.values,
+        .splats = recording.splats.splats,
+        .ranks = recording.format.fitsOneWord() ? sorted.keys : sorted.values,
         .ranges = recording.ranges(),
         .targets = recording.states(),
         .background = is_light ? glm::vec3(lightOf(glm::dvec3(targets.background))) : targets.background,
         .depth_choice = targets.kept.depth_choice,
         .is_light = is_light,
+        .splats_apart = recording.splats.capacity,
+        .rank_bits = recording.format.rank_bits,
         .is_dimmed = recording.scene.traits().is_dimmed};
     const Kernel& kernel = recording.kernels.get(rasterizeKernel(recording.kernels.threadsPerCell(),
                                                                  targets.kept, recording.scene.splatKind(),
@@ -188,8 +196,8 @@ void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene,
         .chunk_bits = scene.chunkBits(),
         .first_eye = static_cast<gpu::uint>(eyes.first),
         .eye_count = static_cast<gpu::uint>(eyes.count),
-        .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
-        .at_once = static_cast<gpu::uint>(eyes.shares),
+        .capacity = buffers.visible.arrays(eyes.at_once, eyes.empty).capacity,
+        .at_once = static_cast<gpu::uint>(eyes.at_once),
         .first_tile_mask = eyes.first_mask,
         .last_tile_mask = eyes.last_mask};
     const CullKernel kernel{.splat_kind = scene.splatKind(),
@@ -202,7 +210,8 @@ void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene,
 void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
                  const EyesOfList& eyes, Role role) {
     commands.beginPass({role, FrameStage::kSort, "compact"});
-    const KeyValues order = buffers.visible.order(), spare = buffers.visible.spare();
+    const VisibleArrays visible = buffers.visible.arrays(eyes.at_once, eyes.empty);
+    const KeyValues unsorted = visible.unsorted();
     const gpu::CompactPass pass{
         .chunks = scene.chunks(),
         .eyes = buffers.eyes(),
@@ -211,8 +220,8 @@ void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene
         .visible_bits = buffers.visibleBits(),
         .group_offsets = buffers.groupCounts(),
         .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
-        .keys = spare.keys,
-        .splats = spare.values,
+        .keys = unsorted.keys,
+        .splats = unsorted.values,
         .splat_count = scene.splatCount(),
         .chunk_bits = scene.chunkBits(),
         .order_eye = static_cast<gpu::uint>(eyes.order_eye),
@@ -221,22 +230,29 @@ void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene
     const CompactKernel kernel{.in_pages = scene.isInPages(), .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
-    static_assert(Sort::endsInSpare(gpu::kDepthKeyBits));
-    kernels.recordSort(commands, spare, order, buffers.scratch.address<gpu::uint>(), buffers.state,
-                       FrameBuffers::visibleList(eyes.list), gpu::kDepthKeyBits);
+    static_assert(KeyBits::roundsOf(gpu::kDepthKeyBits) % 2 == 1);
+    kernels.recordSort(commands, unsorted, visible.sorted(), buffers.scratch.address<gpu::uint>(),
+                       buffers.state, FrameBuffers::visibleList(eyes.list), gpu::kDepthKeyBits);
 }
 
 void recordPictures(PassKernels& kernels, Commands& commands, const GpuScene& scene,
                     const FrameBuffers& buffers, const Targets& targets, Role role) {
-    const Recording recording{kernels, commands, scene, buffers, targets};
+    const Recording recording{kernels,
+                              commands,
+                              scene,
+                              buffers,
+                              targets,
+                              visibleOf(buffers, targets),
+                              pairFormatOf(buffers, targets),
+                              pairsOf(buffers, targets)};
     commands.beginPass({role, FrameStage::kSplat, "project"});
     recordProjected(recording);
     commands.beginPass({role, FrameStage::kSplat, "bin"});
     recordBinned(recording);
     commands.beginPass({role, FrameStage::kSplat, "sort_tiles"});
     const KeyValues sorted = kernels.recordSort(
-        commands, targets.pairs.pairs, targets.pairs.spare, recording.sums(), buffers.state,
-        recording.field(offsetof(TargetState, pairs)), tileBits(targets.all_tiles));
+        commands, recording.lists.pairs, recording.lists.spare, recording.sums(), buffers.state,
+        recording.field(offsetof(TargetState, pairs)), recording.format.tile_bits);
     recordTileRanges(recording, sorted);
     commands.beginPass({role, FrameStage::kSplat, "rasterize"});
     recordRasterized(recording, sorted);

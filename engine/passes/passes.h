@@ -42,7 +42,7 @@ struct Targets {
     int list = 0;                 // of the visible splats
     glm::uvec2 size_tiles{0, 0};  // of the greatest
     gpu::uint all_tiles = 0;      // of all of them
-    PairArrays pairs;
+    EmptyPictures empty;          // where lists may lie
     glm::vec3 background{0.0f};
     Kept kept;
     bool coarse = false;        // tiles that their eyes do not see sharply may be
@@ -51,8 +51,10 @@ struct Targets {
     bool lists_chosen = false;  // the list holds what touches these, and there is no other one for them
 };
 
-// How many bits it takes to distinguish this many tiles, and no tile.
-unsigned tileBits(gpu::uint tiles);
+// Where their lists are.
+VisibleArrays visibleOf(const FrameBuffers& buffers, const Targets& targets);
+PairFormat pairFormatOf(const FrameBuffers& buffers, const Targets& targets);
+PairArrays pairsOf(const FrameBuffers& buffers, const Targets& targets);
 
 // The eyes of a list of visible splats: it holds what any of the eyes [first, first + count) sees, ordered by
 // the distance from the midpoint between the eyes or, without one, by the depths of `order_eye`.
@@ -62,9 +64,10 @@ struct EyesOfList {
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
-    // How many pictures are rendered from the list at once.
-    int shares = 1;
-    // For use if only the chosen tiles of each eye count.
+    // How many pictures are rendered from it at once, and where lists of these may lie.
+    int at_once = 1;
+    EmptyPictures empty = {};
+    // For when only the chosen tiles of each eye count.
     gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};
 };
 

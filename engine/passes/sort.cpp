@@ -49,15 +49,15 @@ std::uint64_t Sort::histogramBytes(std::uint64_t items) {
 
 KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare,
                        gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
-                       std::uint64_t list_bytes, unsigned key_bits) const {
+                       std::uint64_t list_bytes, const KeyBits& key_bits) const {
     const auto run_sums = histograms.at(gpu::kMaxDigits),
                counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
-    // As few bits per round as possible.
-    const unsigned rounds = roundsOf(key_bits);
-    for (unsigned round = 0, shift = 0; round < rounds; ++round) {
-        const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
+    // As few bits a round as possible.
+    unsigned shift = key_bits.first;
+    for (unsigned round = 0, left = key_bits.count; round < key_bits.rounds; ++round) {
+        const unsigned rounds = key_bits.rounds - round, bits = (left + rounds - 1) / rounds;
         const gpu::uint digits = 1u << bits;
         commands.dispatchIndirect(
             kernels.get(count_),
@@ -68,6 +68,7 @@ KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, K
                                   lists, groups);
         std::swap(in, spare);
         shift += bits;
+        left -= bits;
     }
     return in;
 }

@@ -12,6 +12,19 @@ struct KeyValues {
     gpu::DeviceAddress<gpu::uint> keys, values;
 };
 
+// The bits of the keys by which a list is sorted.
+struct KeyBits {
+    unsigned count, first, rounds;
+
+    KeyBits(unsigned count_of_bits, unsigned first_bit = 0)
+        : count(count_of_bits), first(first_bit), rounds(roundsOf(count_of_bits)) {}
+    // As few rounds as possible.
+    static constexpr unsigned roundsOf(unsigned key_bits) {
+        return (key_bits + gpu::kMaxDigitBits - 1) / gpu::kMaxDigitBits;
+    }
+    [[nodiscard]] bool endInSpare() const { return rounds % 2 == 1; }
+};
+
 // How lanes find equal digits. Ballots work for any subgroup width; comparing with each lane in turn is
 // cheaper if there are at most eight.
 enum class DigitMatch { kAuto, kBallots, kComparisons };
@@ -28,21 +41,14 @@ public:
     // Bytes of `histograms` for lists of up to `items`: a byte per key and 34 KiB, 546 KiB at most.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
-    // True if the result of `record` lies in `spare`.
-    static constexpr bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
-
-    // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns
-    // whichever of the two holds the result. The length is that of the list at `list_bytes` of `lists`, whose
-    // number of workgroups is used.
+    // Sorts `in`; `spare` is as large and is overwritten. Without values (both null) it sorts keys alone.
+    // Returns whichever of the two holds the result: KeyBits::endInSpare. The length is that of the list at
+    // `list_bytes` of `lists`, whose count of workgroups is used.
     KeyValues record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare,
                      gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists, std::uint64_t list_bytes,
-                     unsigned key_bits) const;
+                     const KeyBits& bits) const;
 
 private:
-    static constexpr unsigned roundsOf(unsigned key_bits) {
-        return (key_bits + gpu::kMaxDigitBits - 1) / gpu::kMaxDigitBits;
-    }
-
     SortCountKernel count_;
     SortScatterKernel scatter_;
 };

@@ -31,7 +31,6 @@ public:
     [[nodiscard]] const LodMeta& meta() const { return chunks_->meta(); }
     [[nodiscard]] std::uint64_t environmentSplats() const { return environment_splats_; }
     [[nodiscard]] std::size_t fileCount() const { return chunks_->environmentIndex() + 1; }
-    [[nodiscard]] bool isFromWeb() const { return web_ != nullptr; }
     // See WebFiles; 0 and empty for scenes on the disk.
     [[nodiscard]] std::uint64_t failedFetches() const { return web_ ? web_->failedCount() : 0; }
     [[nodiscard]] std::string stale() const { return web_ ? web_->stale() : std::string(); }

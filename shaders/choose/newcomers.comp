@@ -16,6 +16,7 @@ layout(constant_id = 1) const bool kPlaced = false;
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
 #include "lib/tile_mask.glsl"
+#include "lib/tile_set.glsl"
 #include "lib/moving_pixel.glsl"
 
 layout(local_size_x = kWarpGroup) in;
@@ -103,7 +104,7 @@ void main() {
     barrier();
     for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kWarpGroup) {
         const uint rank = begin + in_block;
-        if (rank < count && pass.source_counts.at[rank] == 0) {
+        if (rank < count && tileCount(pass.source_sets.at[rank]) == 0) {
             unseen_ranks[atomicAdd(unseen_count, 1)] = rank;
         }
     }

@@ -13,10 +13,19 @@ uvec2 pairsFrom(uint begin, uint count) {
     return pass.pairs.at[0].count > 0 ? uvec2(begin, begin + count) : uvec2(0);
 }
 
+// See lib/pair_word.glsl.
+void putPairAt(uint place, uint tile, uint rank) {
+    if (pass.rank_bits == 0) {
+        pass.tiles.at[place] = tile;
+        pass.ranks.at[place] = rank;
+    } else {
+        pass.tiles.at[place] = tile << pass.rank_bits | rank;
+    }
+}
+
 // The next of `pairs`, if there is one. `tile`: its number.
 void putPair(inout uvec2 pairs, uint tile, uint rank) {
     if (pairs.x >= pairs.y) { return; }
-    pass.tiles.at[pairs.x] = tile;
-    pass.ranks.at[pairs.x] = firstSplat() + rank;
+    putPairAt(pairs.x, tile, rank);
     ++pairs.x;
 }

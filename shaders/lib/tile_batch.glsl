@@ -24,11 +24,11 @@ ProjectedSplat asSeenWider(ProjectedSplat splat, float screen_variance) {
     return splat;
 }
 
-void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
+void loadSplat(uint slot, uint lanes_in_subgroup, uint place, uvec2 tile_px, bool is_coarse) {
     const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
     const float low_pass =
         pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
-    ProjectedSplat splat = pass.splats.at[rank];
+    ProjectedSplat splat = pass.splats.at[place];
     if (kMeasures && kSplatKind != kDiscs && is_wider) {
         splat = asSeenWider(splat, pass.eyes.at[gl_WorkGroupID.z].screen_variance);
     }
@@ -74,7 +74,8 @@ void loadBatch(uint lanes, uint begin, uint first_slot, uint splats, uvec2 tile_
     uint i = is_coarse ? indexInCell() : gl_SubgroupID * lanes + gl_SubgroupInvocationID;
     if (i >= splats) { return; }
     [[dont_unroll]] do {
-        loadSplat(first_slot + i, lanes, pass.ranks.at[begin + i], tile_px, is_coarse);
+        const uint rank = rankOfPair(pass.ranks.at[begin + i], pass.rank_bits);
+        loadSplat(first_slot + i, lanes, gl_WorkGroupID.z * pass.splats_apart + rank, tile_px, is_coarse);
         i += is_coarse ? kThreadsPerCell : kThreads;
     }
     while (i < splats)

@@ -8,6 +8,8 @@ BINOSPLAT_BEGIN_SHARED
 
 // Tiles are the unit of binning and of patching; the 16x16 of 3DGS and 2DGS (Kerbl et al. 2023, section 6).
 BINOSPLAT_CONSTANT uint kTileSize = 16;
+// Columns and rows of tiles, at most: lib/tile_set.glsl has ten bits for each.
+BINOSPLAT_CONSTANT uint kMostTilesAcross = 1024;
 // Cells are the quarters of a tile that one subgroup owns while blending, so that a splat only costs the
 // cells it touches.
 BINOSPLAT_CONSTANT uint kCellSize = 8;
@@ -56,10 +58,6 @@ BINOSPLAT_CONSTANT uint kDepthKeyBits = 27;
 BINOSPLAT_CONSTANT uint kExactDepthKeys = 14 << 23;
 BINOSPLAT_CONSTANT uint kNearKeyShift = 10;
 BINOSPLAT_CONSTANT uint kFarKeyShift = 8;
-
-// bin_large: enough threads for any device, since only the device knows how many splats there are for them.
-BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
-BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
 
 // newcomers: visible splats that a workgroup examines; few of them are seen by only one eye.
 BINOSPLAT_CONSTANT uint kNewcomersBlock = 1024;

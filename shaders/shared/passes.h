@@ -68,60 +68,59 @@ struct ProjectPass {
     ListStates visible;
     ProjectedSplats splats;  // out
     UVec2s tile_sets;        // out: lib/tile_set.glsl
-    Uints tile_counts;       // out
     // out: tiles before each block of kListBlock splats; one target's blocks after the other's
     CoherentUints group_sums;
     ListStates pairs;  // out: one for each tile that a splat touches
     TargetStates targets;
     uint chunk_bits;
-    uint splats_apart;  // from one target's splats, sets and counts to the next one's
+    uint splats_apart;  // from one target's splats and sets to the next one's
     uint capacity;      // of the pairs
     uint is_dimmed;     // 1: Gaussians that were trained with an opacity that the low-pass dims
 };
 
-// bin and bin_large: a (tile, splat) pair for each tile that a splat touches, front to back.
+// bin: a (tile, splat) pair for each tile that a splat touches, front to back.
 struct BinPass {
     EyeViews eyes;
     ProjectedSplats splats;
     UVec2s tile_sets;
-    Uints tile_counts;
     Uints group_sums;
     ListStates visible;
     ListStates pairs;
-    Uints tiles;  // out
-    Uints ranks;  // out: indices into `splats`
-    // out of bin, unordered: what is left for bin_large; for each target where its pairs begin
-    Uints large_splats;
-    Uints large_begins;  // out of bin: where the pairs of each begin
+    Uints tiles;  // out, with the ranks if these have bits there: lib/pair_word.glsl
+    Uints ranks;  // out otherwise: the splats' places among those of their target
     TargetStates targets;
     uint splats_apart;  // as in ProjectPass
     uint all_tiles;     // of all targets
+    uint rank_bits;
 };
 
 // tile_ranges: where each tile's pairs are once they are sorted by tile. Under a mask also which tiles have
 // any; the others become background.
 struct TileRangesPass {
     EyeViews eyes;
-    Uints tiles;
+    Uints tiles;         // BinPass::tiles, sorted
     ListStates pairs;    // also counts finished workgroups
     UVec2s ranges;       // out: begin and end, equal where a tile has no pairs
     ListStates visible;  // under a mask: the splats of the pairs
     TargetStates targets;
     vec3 background;
+    uint rank_bits;  // as in BinPass
 };
 
 // rasterize: blending, one workgroup per tile.
 struct RasterizePass {
     EyeViews eyes;
     ProjectedSplats splats;
-    Uints ranks;
+    Uints ranks;  // BinPass::ranks or, if these have bits there, BinPass::tiles; sorted
     UVec2s ranges;
     TargetStates targets;
     vec3 background;
     // The depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives.
     uint depth_choice;
-    uint is_light;   // 1: colours and background are light, to be encoded after blending
-    uint is_dimmed;  // as in ProjectPass
+    uint is_light;      // 1: colours and background are light, to be encoded after blending
+    uint splats_apart;  // as in ProjectPass
+    uint rank_bits;     // as in BinPass
+    uint is_dimmed;     // as in ProjectPass
 };
 
 // contribute: how much each splat contributes to an eye's picture and, compared with a wanted picture, in
@@ -130,7 +129,7 @@ struct RasterizePass {
 struct ContributePass {
     EyeViews eyes;
     ProjectedSplats splats;
-    Uints ranks;
+    Uints ranks;  // as in RasterizePass
     UVec2s ranges;
     Uints order;           // the splats' indices in the scene
     FloatColours picture;  // as rasterized
@@ -138,6 +137,7 @@ struct ContributePass {
     // in and out: kErrorSums or kContributionSums per splat of the scene, of 64 bits, the lower word first
     Uints sums;
     uint eye;
+    uint rank_bits;
 };
 
 // weigh: predicted: which tiles are cheaper to render than to reproject, and whether reprojecting anything
@@ -235,7 +235,7 @@ struct NewcomersPass {
     Uints tile_depths;  // WeighPass
     Uints order;
     ListStates visible;
-    Uints source_counts;  // tiles that each splat touches in the source
+    UVec2s source_sets;  // the tiles that each splat touches in the source: lib/tile_set.glsl
     Uints tile_kinds;
     Uints tile_errors;
     WarpCounterss counters;
@@ -294,7 +294,7 @@ struct SortCountPass {
     uint digits;  // a power of two, at most kMaxDigits
 };
 struct SortScatterPass {
-    Uints keys_in, values_in;
+    Uints keys_in, values_in;  // values: null if the keys are all there is
     Uints keys_out, values_out;
     Uints histograms;
     Uints run_sums;

@@ -279,7 +279,6 @@ BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 // decides on coarse tiles.
 struct EyeCounters {
     uint pairs;                  // of tile and splat
-    uint large_splats;           // splats that bin left to bin_large
     uint full_tiles;             // under a mask: tiles with pairs
     uint coarse_tiles;           // coarse tiles with pairs, including those that are only tried as coarse
     DispatchSize per_full_tile;  // in the first of several targets that are rendered at once: for all
@@ -328,7 +327,6 @@ struct TargetState {
     uint measured;
     float depth_scale;  // of mesh_depths
     float depth_offset;
-    uint unused;  // makes the size a multiple of eight bytes in both languages
     // 1: every tile shows a picture warped from a history, which stays if the lists' capacity does not
     // suffice
     uint is_made;

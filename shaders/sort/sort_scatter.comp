@@ -6,8 +6,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
+#include "lib/address.glsl"
 #include "lib/group.glsl"
 #include "lib/list.glsl"
 
@@ -80,6 +82,7 @@ void main() [[subgroup_uniform_control_flow]] {
     }
     barrier();
 
+    const bool has_values = isThere(uvec2(pass.values_in));
     const uint lanes = laneCount();
     const uint own_digits = gl_SubgroupID * pass.digits;
     const uint block_keys = sortBlockKeys(count), run_keys = block_keys / gl_NumSubgroups;
@@ -108,7 +111,7 @@ void main() [[subgroup_uniform_control_flow]] {
         const uint item = run_begin + step_begin + gl_SubgroupInvocationID;
         const bool valid = item < run_end;
         const uint key = valid ? pass.keys_in.at[item] : 0;
-        const uint value = valid ? pass.values_in.at[item] : 0;
+        const uint value = valid && has_values ? pass.values_in.at[item] : 0;
         const uint digit = digitOf(key);
         const uvec4 peers = matchDigit(digit, subgroupBallot(valid));
         const uint before = subgroupBallotExclusiveBitCount(peers);
@@ -120,7 +123,7 @@ void main() [[subgroup_uniform_control_flow]] {
         place = subgroupShuffle(place, firstLane(peers) & (lanes - 1)) + before;
         if (valid) {
             pass.keys_out.at[place] = key;
-            pass.values_out.at[place] = value;
+            if (has_values) { pass.values_out.at[place] = value; }
         }
         subgroupBarrier();  // in the next step another lane is the first of a digit
         step_begin += lanes;

@@ -25,6 +25,7 @@ const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/cells.glsl"
+#include "lib/pair_word.glsl"
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
@@ -68,6 +69,8 @@ void loadSplat(uint slot, uint rank, uvec2 tile_px) {
         if ((cells & (1u << cell)) != 0) { atomicOr(cell_splats[cell][slot / 32], 1u << (slot % 32)); }
     }
 }
+
+uint rankAt(uint pair) { return rankOfPair(pass.ranks.at[pair], pass.rank_bits); }
 
 float limit(float value) { return clamp(value, -kMaxPixelError, kMaxPixelError); }
 
@@ -232,7 +235,7 @@ void main() [[subgroup_uniform_control_flow]] {
         barrier();
         if (anyOpen()) { atomicOr(open_threads, 1); }
         for (uint slot = thread; slot < splats; slot += kThreads) {
-            loadSplat(slot, pass.ranks.at[first + slot], tile_px);
+            loadSplat(slot, rankAt(first + slot), tile_px);
         }
         barrier();
         if (open_threads == 0) { break; }
@@ -247,7 +250,7 @@ void main() [[subgroup_uniform_control_flow]] {
         barrier();
         for (uint slot = thread; slot < splats; slot += kThreads) {
             if (sums[slot][kSumWeight] == 0) { continue; }
-            const uint word = pass.order.at[pass.ranks.at[first + slot]] * 2 * kSums;
+            const uint word = pass.order.at[rankAt(first + slot)] * 2 * kSums;
             for (uint s = 0; s < kSums; ++s) { addToScene(word + 2 * s, sums[slot][s]); }
         }
     }

@@ -88,8 +88,8 @@ uint project(uint rank, EyeView eye) {
                    packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
         pass.splats.at[firstSplat() + rank] = p;
     }
-    // Empty if the splat touches no tile: then no splat is written either.
-    pass.tile_sets.at[firstSplat() + rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
+    // If the splat meets no tile, no splat is written either.
+    pass.tile_sets.at[firstSplat() + rank] = tiles > 0 ? packTileSet(box, small, tiles) : uvec2(0);
     return tiles;
 }
 
@@ -102,11 +102,7 @@ void main() [[subgroup_uniform_control_flow]] {
     uint rank = group * kListBlock + gl_LocalInvocationIndex;
     const uint end = min((group + 1) * kListBlock, count);
     [[dont_unroll]] do {
-        if (rank < end) {
-            const uint tiles = project(rank, eye);
-            pass.tile_counts.at[firstSplat() + rank] = tiles;
-            own_tiles += tiles;
-        }
+        if (rank < end) { own_tiles += project(rank, eye); }
         rank += kGroupSize;
     }
     while (rank < end)

@@ -38,6 +38,7 @@ const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/cells.glsl"
+#include "lib/pair_word.glsl"
 #include "lib/picture.glsl"
 #include "lib/srgb.glsl"
 

@@ -10,6 +10,7 @@
 #include "lib/last_group.glsl"
 #include "lib/gaze.glsl"
 #include "lib/target.glsl"
+#include "lib/pair_word.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { TileRangesPass pass; };
@@ -29,7 +30,7 @@ uint firstPairFrom(uint tile, uint begin) {
     uint end = pass.pairs.at[0].count;
     while (begin < end) {
         const uint middle = begin + (end - begin) / 2;
-        if (pass.tiles.at[middle] < tile) {
+        if (tileOfPair(pass.tiles.at[middle], pass.rank_bits) < tile) {
             begin = middle + 1;
         } else {
             end = middle;

@@ -8,8 +8,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 # shellcheck source=tests/arm64/root.sh
 . tests/arm64/root.sh
 # Kernels for 3D Gaussians, for chosen tiles, with pictures in half precision.
-kernels='cull kSplatKind=1 kMasked=1 kInPages=0|compact kInPages=0|sort_|project .*kMasked=1 kSplatKind=1 kPlaced=0|bin$'
-kernels+='|bin_large kSplatKind=1|tile_ranges kMasked=1 kHalfColours=1|rasterize .*kHalfColours=1 kSplatKind=1 .*kMasked=1 kHistory=1'
+kernels='cull kSplatKind=1 kMasked=1 kInPages=0|compact kInPages=0|sort_|project .*kMasked=1 kSplatKind=1 kPlaced=0|bin kSplatKind=1'
+kernels+='|tile_ranges kMasked=1 kHalfColours=1|rasterize .*kHalfColours=1 kSplatKind=1 .*kMasked=1 kHistory=1'
 kernels+='|warp_history kHalfColours=1 kHiddenTiles=1 kWholeBlocks=1|warp_pixels kHalfColours=1 kHiddenTiles=1'
 kernels+='|price kFoveated=0 kHistory=1|select kPredicted=1 kHistory=1'
 filter=${1:-"^($kernels)"}

@@ -235,10 +235,13 @@ TEST_CASE("the passes of both eyes add up, and passes to stages") {
                                                            {"ROI choice", 224.0},
                                                            {"patch", 512.0}});
     CHECK(stagesOf(Mode::kShared, {passes.back()}) == NamedTimes{{"affiliated", 512.0}});
+    const PassTimes at_once{{{Role::kBoth, FrameStage::kSplat, "rasterize"}, 9.0}};
+    CHECK(stagesOf(Mode::kShared, at_once) == NamedTimes{{"both eyes", 9.0}});
+    CHECK(stagesOf(Mode::kTemporal, at_once) == NamedTimes{{"patch", 9.0}});
     CHECK(byPass({passes[0], passes[3], passes[9]}) == NamedTimes{{"cull", 1.0}, {"rasterize", 520.0}});
 }
 
-TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
+TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye, or of both eyes at once") {
     BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0),
                 shared = makeResult("a", Mode::kShared, 1, 10.0);
     predicted.pass_ms = {{{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 1.0},
@@ -254,6 +257,9 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
     compareModes(results);
     CHECK(these(results[0].move_cost.value(), results[1].move_cost.has_value()) ==
           these(doctest::Approx(20.0), false));
+    results[1].pass_ms = {{{Role::kBoth, FrameStage::kSplat, "rasterize"}, 17.0}};  // 1 us a pair
+    compareModes(results);
+    CHECK(results[0].move_cost.value() == doctest::Approx(10.0));
     results[0].counters["tiles_weighed_as_moved"] = 0;
     compareModes(results);
     CHECK_FALSE(results[0].move_cost.has_value());

@@ -124,7 +124,7 @@ TEST_CASE_FIXTURE(Gpu,
             eyes[1].world_from_camera.orientation =
                 eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
             const FrameResult result = frame.render(eyes, makeSettings(Mode::kTemporal, 0.9));
-            if (step == 4) { CHECK(result.counters.commands == (cant > 0.0 ? 37u : 23u)); }
+            if (step == 4) { CHECK(result.counters.commands == (cant > 0.0 ? 35u : 22u)); }
             full->render(eyes, makeSettings(Mode::kShared));
             CHECK(test::psnrDb(test::picturesOf(frame), test::picturesOf(*full)) >= 53.0);
         }
@@ -142,7 +142,7 @@ TEST_CASE_FIXTURE(
         CHECK(result.work_rendered > 0.15);
         CHECK(result.work_rendered < 0.22);  // at most one tile more than the budget
         CHECK(result.counters.warped->tiles_patched > 0);
-        CHECK(result.counters.commands <= 23);
+        CHECK(result.counters.commands <= 22);
         if (frame % 6 == 0) { CHECK(walk.psnr() > 36.0); }
     }
 }

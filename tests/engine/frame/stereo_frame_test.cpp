@@ -244,6 +244,30 @@ TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
     }
 }
 
+TEST_CASE_FIXTURE(Gpu,
+                  "both eyes are rendered at once where a pair fits into a word, in at most 18 commands and "
+                  "92 bytes a visible splat") {
+    for (const glm::uvec2 size_px : {glm::uvec2(64, 48), glm::uvec2(256, 256), glm::uvec2(1024, 1024)}) {
+        CAPTURE(size_px.x);
+        const ViewedScene view = test::viewBuiltin("builtin:fence", size_px);
+        KeptFrame frame(context(), view.scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+        const auto eyes = test::headsetEyes(view.eye, 0.0);
+        const FrameResult result = frame.render(eyes, makeSettings(Mode::kShared));
+        CHECK(countOf(result, "commands") == 18);
+        const std::uint64_t pairs = countOf(result, "tile_pairs_left") + countOf(result, "tile_pairs_right");
+        CHECK(pairs > 0);
+        if (size_px.x < 256) { continue; }  // lists are longer than such pictures
+        CHECK(countOf(result, "visible_bytes") <= 92 * (countOf(result, "splats_visible_left") + 1024));
+        CHECK(countOf(result, "pair_bytes") <= 4 * pairs + 16 * 1024);
+        // Another mode in between has lists and pictures of its own.
+        const test::PairOfValues shown = test::shownBy(frame);
+        frame.render(eyes, makeSettings(Mode::kTwoPass));
+        CHECK(test::shownBy(frame) == shown);
+        frame.render(eyes, makeSettings(Mode::kShared, kRight));
+        CHECK(test::shownBy(frame) == shown);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a pair and a pixel") {
     CHECK(deviceBytesPerSplat(0, false) <= 64);
     CHECK(deviceBytesPerSplat(3, false) <= 160);

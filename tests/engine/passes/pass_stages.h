@@ -129,10 +129,16 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
     return result;
 }
 
+// How many tiles are in a set of lib/tile_set.glsl.
+inline std::uint32_t tilesIn(glm::uvec2 tile_set) {
+    return (tile_set.y & 0x80000000u) != 0 ? static_cast<std::uint32_t>(std::popcount(tile_set.y & 0xffffu))
+                                           : tile_set.y >> 10;
+}
+
 // What project leaves on the device for a list of splats.
 struct ProjectedOnDevice {
     std::uint32_t count;
-    Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, target;
+    Buffer list, order, splats, tile_sets, group_sums, pairs, target;
 };
 
 // `tile_mask`, unless null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
@@ -153,7 +159,6 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device,
         gpu.upload("order", order),
         gpu.allocate<gpu::ProjectedSplat>("splats", count),
         gpu.allocate<glm::uvec2>("tile sets", count),
-        gpu.allocate<std::uint32_t>("tile counts", count),
         gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
         gpu.upload("pairs", std::vector{gpu::ListState{}}),
         gpu.upload("target", std::vector{state})};
@@ -164,7 +169,6 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device,
     pass.visible = result.list.address<gpu::ListState>();
     pass.splats = result.splats.address<gpu::ProjectedSplat>();
     pass.tile_sets = result.tile_sets.address<gpu::uvec2>();
-    pass.tile_counts = result.tile_counts.address<gpu::uint>();
     pass.group_sums = result.group_sums.address<gpu::uint>();
     pass.pairs = result.pairs.address<gpu::ListState>();
     pass.capacity = pair_capacity;

@@ -127,44 +127,42 @@ bool inOrder(const TilePair& a, const TilePair& b) {
 }
 
 // project and bin from the twin's order: the pairs as bin writes them, or only those in the tiles of a mask,
-// if there is one.
+// if there is one. `rank_bits`: of a pair in one word.
 std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinStages& twin,
-                                  const std::vector<gpu::uint>& mask = {}) {
+                                  const std::vector<gpu::uint>& mask = {}, gpu::uint rank_bits = 0) {
     const SceneOnDevice device(gpu, view.scene, {view.eye}, kSettings.near);
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
-    const Kernel& kernel = gpu.kernel(BinKernel{});
-    const Kernel& large_kernel = gpu.kernel(BinLargeKernel{.splat_kind = device.scene.splatKind()});
+    const Kernel& kernel = gpu.kernel(BinKernel{.splat_kind = device.scene.splatKind()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const test::ProjectedOnDevice projected =
         test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity),
                  ranks = gpu.allocate<gpu::uint>("ranks", capacity);
-    const Buffer large = gpu.allocate<gpu::uint>("large splats", capacity),
-                 begins = gpu.allocate<gpu::uint>("large begins", capacity);
     gpu::BinPass pass{};
     pass.eyes = device.eyeViews();
     pass.splats = projected.splats.address<gpu::ProjectedSplat>();
     pass.tile_sets = projected.tile_sets.address<gpu::uvec2>();
-    pass.tile_counts = projected.tile_counts.address<gpu::uint>();
     pass.group_sums = projected.group_sums.address<gpu::uint>();
     pass.visible = projected.list.address<gpu::ListState>();
     pass.pairs = projected.pairs.address<gpu::ListState>();
     pass.tiles = tiles.address<gpu::uint>();
-    pass.ranks = ranks.address<gpu::uint>();
-    pass.large_splats = large.address<gpu::uint>();
-    pass.large_begins = begins.address<gpu::uint>();
+    if (rank_bits == 0) { pass.ranks = ranks.address<gpu::uint>(); }
     pass.targets = projected.target.address<gpu::TargetState>();
     pass.all_tiles = static_cast<gpu::uint>(test::tileCount(view.eye.size_px));
+    pass.rank_bits = rank_bits;
     gpu.run([&](Commands& commands) {
         commands.dispatchIndirect(kernel, pass, projected.list, offsetof(gpu::ListState, per_block));
-        commands.dispatch(large_kernel, pass, gpu::kBinLargeGroups);
     });
     const std::uint32_t count = gpu.readBack<gpu::ListState>(projected.pairs, 1)[0].count;
     const auto tile_values = gpu.readBack<gpu::uint>(tiles, count),
                rank_values = gpu.readBack<gpu::uint>(ranks, count);
     std::vector<TilePair> result(count);
-    for (std::size_t i = 0; i < count; ++i) { result[i] = {tile_values[i], rank_values[i]}; }
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i] = rank_bits == 0
+                        ? TilePair{tile_values[i], rank_values[i]}
+                        : TilePair{tile_values[i] >> rank_bits, tile_values[i] & ((1u << rank_bits) - 1)};
+    }
     return result;
 }
 
@@ -207,11 +205,11 @@ TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times t
         const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
         const test::ProjectedOnDevice projected = test::projectOnDevice(*this, device, twin.order);
         const auto splats = readBack<gpu::ProjectedSplat>(projected.splats, projected.count);
-        const auto tile_counts = readBack<std::uint32_t>(projected.tile_counts, projected.count);
+        const auto tile_sets = readBack<glm::uvec2>(projected.tile_sets, projected.count);
         FieldErrors errors;
         std::size_t compared = 0;
         for (std::size_t rank = 0; rank < splats.size(); ++rank) {
-            if (tile_counts[rank] == 0) { continue; }  // splats that touch no tile are undefined
+            if (test::tilesIn(tile_sets[rank]) == 0) { continue; }  // splats that meet no tile are undefined
             errors.note(splats[rank], twin.splats[rank], view, twin.order[rank]);
             ++compared;
         }
@@ -229,6 +227,7 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
     for (const auto& [view, twin] : test::stagedScenes()) {
         CAPTURE(view.name);
         const std::vector<TilePair> pairs = binOnDevice(*this, view, twin);
+        CHECK(binOnDevice(*this, view, twin, {}, 17) == pairs);
         // Each once, in depth order, with ascending tiles within a splat; none in no tile.
         CHECK(std::adjacent_find(pairs.begin(), pairs.end(), [](const TilePair& a, const TilePair& b) {
                   return !inOrder(a, b);

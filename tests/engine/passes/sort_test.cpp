@@ -12,11 +12,13 @@ constexpr std::uint32_t kUntouched = 0xdeadbeefu;
 
 std::uint32_t maskOf(unsigned key_bits) { return key_bits == 32 ? UINT32_MAX : (1u << key_bits) - 1; }
 
-// The indices of `keys` sorted by their lowest `key_bits` bits, with equal keys in their original order.
-Values stableOrder(const Values& keys, unsigned key_bits) {
+// The indices of `keys` sorted by `key_bits` bits, the lowest or those from `first_bit` on, with equal keys
+// in their original order.
+Values stableOrder(const Values& keys, unsigned key_bits, unsigned first_bit = 0) {
     Values order(keys.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i] & maskOf(key_bits); });
+    std::ranges::stable_sort(order, {},
+                             [&](std::uint32_t i) { return keys[i] >> first_bit & maskOf(key_bits); });
     return order;
 }
 
@@ -76,7 +78,7 @@ int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, uns
                 kernels, commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
                 histograms.address<gpu::uint>(), state_buffer, i * sizeof(gpu::ListState), key_bits);
             in_spare = sorted.keys.value == at(spare_keys).value;
-            CHECK(in_spare == Sort::endsInSpare(key_bits));
+            CHECK(in_spare == KeyBits(key_bits).endInSpare());
         }
     });
     const Values sorted_keys = gpu.readBack<std::uint32_t>(in_spare ? spare_keys : key_buffer, keys.size());
@@ -213,6 +215,31 @@ TEST_CASE_FIXTURE(Gpu,
                     {kRandom, kAllEqual, kFewDistinct, kDescending});
     }
     for (const unsigned key_bits : {32u, 12u}) { checkSorted(*this, key_bits, {1u << 21}, {kRandom}); }
+}
+
+TEST_CASE_FIXTURE(Gpu, "keys alone are sorted by some of their bits, in place if there is one round more") {
+    const Sort sort(context());
+    KernelCache kernels(context(), sort.kernels());
+    for (const std::size_t size : {1u, 600u, 3 * gpu::kSortBlock + 1}) {
+        for (const auto& [count, first] : {std::pair(9u, 17u), std::pair(14u, 18u), std::pair(1u, 3u)}) {
+            CAPTURE(count);
+            const Values keys = makeKeys(kRandom, size, 32);
+            const Buffer key_buffer = upload("keys", keys), spare = upload("spare keys", keys);
+            const Buffer lists = upload("lists", std::vector{test::makeList(size)});
+            const Buffer histograms(context(), "histograms", Sort::histogramBytes(size));
+            KeyBits bits(count, first);
+            if (bits.endInSpare()) { ++bits.rounds; }
+            run([&](Commands& commands) {
+                const KeyValues sorted = sort.record(kernels, commands, {key_buffer.address<gpu::uint>(), {}},
+                                                     {spare.address<gpu::uint>(), {}},
+                                                     histograms.address<gpu::uint>(), lists, 0, bits);
+                CHECK(sorted.keys.value == key_buffer.address<gpu::uint>().value);
+            });
+            Values expected;
+            for (const std::uint32_t i : stableOrder(keys, count, first)) { expected.push_back(keys[i]); }
+            CHECK(readBack<std::uint32_t>(key_buffer, size) == expected);
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay as they are") {

@@ -107,12 +107,14 @@ public:
                                     .shown_mask = shownMask(hidden_tiles)},
                  pixelGroups());
     }
-    // Splats in `order` as `scene` holds them, with what the dominant eye's project counted for each; eye 1
-    // is the affiliated one.
+    // Splats in `order` as `scene` holds them, with the number of tiles that each meets in the dominant eye;
+    // eye 1 is the affiliated one.
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order,
                       const std::vector<gpu::uint>& dominant_tiles) {
+        std::vector<glm::uvec2> sets;
+        for (const gpu::uint tiles : dominant_tiles) { sets.emplace_back(0, tiles << 10); }
         const Buffer order_buffer = gpu_.upload("order", order),
-                     count_buffer = gpu_.upload("dominant counts", dominant_tiles);
+                     set_buffer = gpu_.upload("dominant sets of tiles", sets);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
         dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
@@ -121,7 +123,7 @@ public:
                                     .tile_depths = words(tile_depths_),
                                     .order = order_buffer.address<gpu::uint>(),
                                     .visible = lists.address<gpu::ListState>(),
-                                    .source_counts = count_buffer.address<gpu::uint>(),
+                                    .source_sets = set_buffer.address<gpu::uvec2>(),
                                     .tile_kinds = words(tile_kinds_),
                                     .tile_errors = words(tile_errors_),
                                     .counters = counters(),

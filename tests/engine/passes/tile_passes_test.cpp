@@ -23,7 +23,7 @@ struct Ranges {
 // Under a mask, only for the listed tiles.
 Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, glm::uvec2 size_px,
                       bool is_masked = false, const std::vector<std::uint32_t>& listed = {},
-                      bool half_floats = false) {
+                      bool half_floats = false, gpu::uint rank_bits = 0) {
     const Kernel& kernel = gpu.kernel(TileRangesKernel{.masked = is_masked, .half_colours = half_floats});
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
     const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
@@ -54,6 +54,7 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     pass.ranges = ranges.address<gpu::uvec2>();
     pass.targets = target.address<gpu::TargetState>();
     pass.background = kBackground;
+    pass.rank_bits = rank_bits;
     gpu.run([&](Commands& commands) {
         if (is_masked) {
             commands.dispatchIndirect(
@@ -181,6 +182,12 @@ TEST_CASE_FIXTURE(Gpu,
                 std::ranges::shuffle(listed, random);
                 const Ranges found = rangesOnDevice(*this, tiles, size_px, is_masked, listed, half_floats);
                 CHECK(found.ranges == expected);
+                std::vector<std::uint32_t> words;
+                for (const std::uint32_t t : tiles) {
+                    words.push_back(t << 18 | static_cast<std::uint32_t>(random()) >> 14);
+                }
+                CHECK(rangesOnDevice(*this, words, size_px, is_masked, listed, half_floats, 18).ranges ==
+                      expected);
                 if (!is_masked) { continue; }
                 CHECK(these(found.full, found.groups_done) == these(full, 0));
                 const auto groups = static_cast<std::uint32_t>(full.size());
@@ -290,6 +297,7 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
                                    raster.state.colours,
                                    wanted.address<gpu::vec4>(),
                                    sums.address<gpu::uint>(),
+                                   0,
                                    0};
     const Kernel& kernel =
         gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true, by_lanes));
