@@ -61,13 +61,20 @@ void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
     do { record(eye, near, picture); } while (!hadRoom());
 }
 
-void SplatMeter::measure(const Eye& eye, double near, Picture& picture, const Picture* wanted) {
-    render(eye, near, picture);
+void SplatMeter::addSums(const Picture& picture, const Picture* wanted) {
     commands_.begin();
     recordContributions(kernels_, commands_, *scene_, buffers_, targets_, picture,
                         wanted != nullptr ? *wanted : picture, sums_, fits_);
     commands_.endPass();
     commands_.submitAndWait();
+}
+
+gpu::uint SplatMeter::fullestTile() {
+    gpu::uint most = 0;
+    for (const gpu::uvec2& range : read<gpu::uvec2>(buffers_.tile_ranges)) {
+        most = std::max(most, range.y - range.x);
+    }
+    return most;
 }
 
 void SplatMeter::record(const Eye& eye, double near, const Picture& picture) {

@@ -19,11 +19,13 @@ public:
     // What follows is about this scene, which stays as it is and must outlive it. All sums are zero:
     // of each splat its weight and what pictures are off by, or all kContributionSums if it is to be fitted.
     void show(const GpuScene& scene, bool fits);
-    // Renders an eye into `picture`, on black, and then adds to the sums how much each splat contributes.
-    // `near` is in scene units. `wanted`: what the picture should be, if not what it is.
-    void measure(const Eye& eye, double near, Picture& picture, const Picture* wanted = nullptr);
-    // The same without sums.
+    // Renders an eye into `picture`, on black. `near` is in scene units.
     void render(const Eye& eye, double near, Picture& picture);
+    // Adds to the sums how much each splat contributes to the picture rendered last. `wanted`: what it should
+    // be, if not what it is.
+    void addSums(const Picture& picture, const Picture* wanted = nullptr);
+    // The pairs of the fullest tile of the picture rendered last.
+    [[nodiscard]] gpu::uint fullestTile();
     // The sums so far, in gpu::kContributionSteps.
     [[nodiscard]] std::vector<std::int64_t> sums();
     [[nodiscard]] std::vector<float> pixels(const Picture& picture);

@@ -26,6 +26,9 @@ constexpr double kOpacityRate = 0.6, kSizeRate = 0.4;
 constexpr double kMostGrowth = 0.25;   // of a logarithm in a step
 constexpr double kLeastWeight = 0.01;  // in pixels: of splats that show less, little is known
 constexpr double kLeastHold = 1e-3;
+// Mesa's software device ends the loops of a thread after 65,535 rounds of all of them, that is after some
+// 54,000 pairs if each splat meets every cell of its tile. Pictures of more are taken larger.
+constexpr gpu::uint kMostPairs = 48'000, kMostSidePx = 2048;
 constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
 
 // The sums of one splat, in pixels.
@@ -92,6 +95,13 @@ std::vector<Eye> eyesOf(const std::vector<View>& views, gpu::uint side_px) {
     return eyes;
 }
 
+Eye enlarge(const Eye& eye, double by) {
+    const Intrinsics& k = eye.intrinsics;
+    return {eye.world_from_camera,
+            {by * k.fx, by * k.fy, by * k.cx, by * k.cy},
+            glm::uvec2(by * glm::dvec2(eye.size_px))};
+}
+
 std::vector<std::uint32_t> wholeOf(std::size_t splats) {
     std::vector<std::uint32_t> all(splats);
     std::iota(all.begin(), all.end(), 0u);
@@ -129,16 +139,37 @@ ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> ey
       steps_(steps),
       meter_(context),
       wanted_(eyes_.size()) {
-    const GpuScene whole(context, scene);
-    meter_.show(whole, false);
-    for (std::size_t i = 0; i < eyes_.size(); ++i) {
-        meter_.measure(eyes_[i], near_, wanted_[i]);
-        if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
-    }
-    const std::vector<std::int64_t> sums = meter_.sums();
-    weights_.resize(scene.size());
-    for (std::size_t i = 0; i < weights_.size(); ++i) {
-        weights_[i] = sums[i * gpu::kErrorSums + gpu::kSumWeight];
+    weigh(progress);
+}
+
+// Pictures with too full tiles wait for the next round, with twice the pixels a side, where a splat's weight
+// counts a quarter.
+void ThinOut::weigh(const Progress& progress) {
+    const GpuScene whole(context_, scene_);
+    weights_.assign(scene_.size(), 0);
+    std::vector<std::size_t> left(eyes_.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    for (std::int64_t area = 1; !left.empty(); area *= 4) {
+        meter_.show(whole, false);
+        std::vector<std::size_t> too_full;
+        for (const std::size_t i : left) {
+            meter_.render(eyes_[i], near_, wanted_[i]);
+            const Eye larger = enlarge(eyes_[i], 2.0);
+            const bool may_grow =
+                context_.isSoftware() && std::max(larger.size_px.x, larger.size_px.y) <= kMostSidePx;
+            if (may_grow && meter_.fullestTile() > kMostPairs) {
+                eyes_[i] = larger;
+                too_full.push_back(i);
+                continue;
+            }
+            meter_.addSums(wanted_[i]);
+            if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
+        }
+        const std::vector<std::int64_t> sums = meter_.sums();
+        for (std::size_t i = 0; i < weights_.size(); ++i) {
+            weights_[i] += sums[i * gpu::kErrorSums + gpu::kSumWeight] / area;
+        }
+        left = std::move(too_full);
     }
 }
 
@@ -177,7 +208,8 @@ void ThinOut::fit(Scene& scene, const Progress& progress) {
         const GpuScene shown(context_, scene);
         meter_.show(shown, true);
         for (std::size_t i = static_cast<std::size_t>(step) % kParts; i < eyes_.size(); i += kParts) {
-            meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
+            meter_.render(eyes_[i], near_, picture);
+            meter_.addSums(picture, &wanted_[i]);
             if (progress) {
                 progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / steps_);
             }
@@ -210,7 +242,8 @@ std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progres
     meter_.show(shown, false);
     Picture picture;
     for (std::size_t i = 0; i < eyes_.size(); i += every) {
-        meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
+        meter_.render(eyes_[i], near_, picture);
+        meter_.addSums(picture, &wanted_[i]);
         if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
     }
     std::vector<SplatError> errors(scene.size());

@@ -25,7 +25,8 @@ std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::siz
 class ThinOut {
 public:
     // Renders `scene`, which must outlive this, from all eyes, and reports to `progress`. `near` is in scene
-    // units. `steps`: of a fit, each from every fourth eye.
+    // units. `steps`: of a fit, each from every fourth eye. On a software device, pictures of which a tile
+    // has too many splats are larger than their eyes say.
     ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near,
             const Progress& progress = {}, int steps = kFitSteps);
 
@@ -44,6 +45,7 @@ public:
                                                         std::size_t every = 1);
 
 private:
+    void weigh(const Progress& progress);
     void fit(Scene& scene, const Progress& progress);
 
     const Context& context_;

@@ -48,7 +48,12 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint place, uvec2 tile_px, boo
     const uint cells = cellsOf(splat, tile_px, low_pass), first_slot = slot - gl_SubgroupInvocationID;
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
-        if (subgroupElect()) {
+        if (kThreads <= 32 && subgroupElect()) {
+            // All lanes are in one word. A loop over words would count: Mesa's software device ends a
+            // thread's loops after 65,535 rounds of all of them, in the middle of very full tiles.
+            atomicOr(cell_splats[cell][first_slot / 32], lanes.x << (first_slot & 31));
+        }
+        if (kThreads > 32 && subgroupElect()) {
             uint word = 0;
             [[dont_unroll]] do {
                 if (lanes[word] != 0) {

@@ -31,15 +31,16 @@ const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
 const uint kWords = kBatchSize / 32;                           // of a bit for each splat
 const uint kNarrow = kContributionSums;
+const uint kNoSplat = kBatchSize;  // the slot of a splat of no opacity
 const uint kSums = kFits ? kContributionSums : kErrorSums;
 const float kMostBehind = 4;  // colours seen through almost nothing cannot be told from rounding
 
-// As in rasterize.
-shared vec4 batch_reference[kBatchSize];
-shared vec4 batch_plane[kBatchSize];
-shared vec4 batch_depth[kBatchSize];
-shared uvec2 batch_colour[kBatchSize];
-shared uint cell_splats[kCellsPerTile][kWords];
+// As rasterize holds them.
+shared vec4 batch_reference[kBatchSize + 1];
+shared vec4 batch_plane[kBatchSize + 1];
+shared vec4 batch_depth[kBatchSize + 1];
+shared uvec2 batch_colour[kBatchSize + 1];
+shared uint cell_splats[kCellsPerTile][kWords];  // four words: blendByLanes holds them in registers
 shared int sums[kBatchSize][kContributionSums];
 shared uint open_threads;
 
@@ -168,14 +169,17 @@ void blendWord(uint bits, uint first_slot, vec2 first_px) {
     }
 }
 
-// The same with kByLanes: kNarrow splats at a time, with each lane reading one.
-void blendByLanes(uint bits, uint first_slot, vec2 first_px) {
-    while (bits != 0 && subgroupBallot(anyOpen()).x != 0) {
+// The same for all words, with kByLanes: kNarrow splats at a time, of which each lane reads one. A word
+// without bits blends the splat of no opacity. There are as few rounds as in rasterize.
+void blendByLanes(uint cell, uint end_slot, vec2 first_px) {
+    uint bits = cell_splats[cell][0], first_slot = 0;
+    uvec3 next = uvec3(cell_splats[cell][1], cell_splats[cell][2], cell_splats[cell][3]);
+    [[dont_unroll]] do {
         uint mine = bits;  // from the lane's splat on
         [[unroll]] for (uint lane = 1; lane < kNarrow; ++lane) {
             if (gl_SubgroupInvocationID >= lane) { mine &= mine - 1; }
         }
-        const uint own_slot = first_slot + uint(findLSB(mine != 0 ? mine : bits));
+        const uint own_slot = mine != 0 ? first_slot + uint(findLSB(mine)) : kNoSplat;
         const BatchSplat read = splatAt(own_slot);
         const uint splats = min(uint(bitCount(bits)), kNarrow);
         uint lane = 0;
@@ -191,7 +195,14 @@ void blendByLanes(uint bits, uint first_slot, vec2 first_px) {
         while (lane < splats)
             ;
         bits = subgroupShuffle(mine & (mine - 1), kNarrow - 1);
+        if (bits == 0) {
+            bits = next.x;
+            next = uvec3(next.yz, 0);
+            first_slot += 32;
+        }
     }
+    while (first_slot < end_slot && subgroupBallot(anyOpen()).x != 0)
+        ;
 }
 
 void addToScene(uint word, int value) {
@@ -227,6 +238,11 @@ void main() [[subgroup_uniform_control_flow]] {
     const uvec2 range = pass.ranges.at[tile], of_cell = uvec2(cell % 2, cell / 2) * kCellSize;
     const uvec2 first_px = of_cell + uvec2(in_cell % kCellSize, in_cell / kCellSize * kPixels);
     begin(tile_px + first_px);
+    if (kByLanes && thread == 0) {
+        batch_reference[kNoSplat] = batch_plane[kNoSplat] = vec4(0);
+        batch_depth[kNoSplat] = vec4(1, 0, 0, 1e30);
+        batch_colour[kNoSplat] = uvec2(0);
+    }
     for (uint first = range.x; first < range.y; first += kBatchSize) {
         const uint splats = min(range.y - first, kBatchSize);
         barrier();  // the previous batch is still being added
@@ -239,12 +255,11 @@ void main() [[subgroup_uniform_control_flow]] {
         }
         barrier();
         if (open_threads == 0) { break; }
-        for (uint word = 0; word < (splats + 31) / 32; ++word) {
-            const uint bits = cell_splats[cell][word];
-            if (kByLanes) {
-                blendByLanes(bits, word * 32, vec2(first_px) + 0.5);
-            } else {
-                blendWord(bits, word * 32, vec2(first_px) + 0.5);
+        if (kByLanes) {
+            blendByLanes(cell, splats, vec2(first_px) + 0.5);
+        } else {
+            for (uint word = 0; word < (splats + 31) / 32; ++word) {
+                blendWord(cell_splats[cell][word], word * 32, vec2(first_px) + 0.5);
             }
         }
         barrier();

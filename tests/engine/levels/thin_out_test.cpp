@@ -67,6 +67,28 @@ TEST_CASE_FIXTURE(Gpu, "what each splat is off by adds up to what the pictures a
     CHECK(nothing == 0.0);
 }
 
+TEST_CASE_FIXTURE(Gpu, "what lies behind very many splats in a single tile is judged as well") {
+    // Dots that let some light through, in front of a disc in the middle.
+    constexpr int kDotsPerSide = 550;
+    Scene scene = makeBuiltin("builtin:one-splat");
+    scene = pickSplats(scene, std::vector<std::uint32_t>(kDotsPerSide * kDotsPerSide + 1, 0));
+    for (std::size_t i = 0; i + 1 < scene.size(); ++i) {
+        const auto at = [](std::size_t place) {
+            return 1.9f * (static_cast<float>(place) + 0.5f) / kDotsPerSide - 0.95f;
+        };
+        scene.positions[i] = {at(i % kDotsPerSide), at(i / kDotsPerSide), 2.0f};
+        scene.scales[i] = glm::vec2(1e-3f);
+        scene.opacities[i] = 1.3f / 255.0f;
+    }
+    scene.positions.back() = {0.0f, 0.0f, 4.0f};
+    const glm::uvec2 size_px(gpu::kTileSize);
+    const Eye eye{Pose{}, intrinsicsFromFovX(glm::radians(53.13), size_px), size_px};
+    ThinOut thin_out(context(), scene, {eye}, 0.2);
+    CHECK(thin_out.splatErrorsOf(scene).back().weight > 0.05);
+    const std::vector<std::uint32_t> most = thin_out.choose(scene.size() - 1);
+    CHECK(most.back() == scene.size() - 1);
+}
+
 TEST_CASE_FIXTURE(
     Gpu,
     "a scene of several blocks gets as many levels as one of a single block, the same bytes every time") {
