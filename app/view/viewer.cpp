@@ -60,9 +60,9 @@ void Viewer::run() {
             std::this_thread::sleep_for(kIdle);
         }
         for (bool goes_on = true; goes_on;) {
-            if (!leaving_ && (isInterrupted() || (options_.frames != 0 && log_.frame >= options_.frames))) {
-                leave();
-            }
+            const bool is_enough =
+                options_.frames != 0 && log_.frame - frames_without_scene_ >= options_.frames;
+            if (!leaving_ && (isInterrupted() || is_enough)) { leave(); }
             try {
                 goes_on = connection_.headset() != nullptr ? step() : comeBack();
             } catch (const xr::Lost& lost) {
@@ -109,6 +109,7 @@ bool Viewer::step() {
     }
     ++log_.frame;
     return true;
+    frames_without_scene_ += scenes_.get() == nullptr ? 1 : 0;
 }
 
 void Viewer::leave() {

@@ -138,7 +138,7 @@ private:
     ProbesSeen probes_seen_;  // where hands point, and the ground
     PictureCopy copy_;
     bool picture_asked_ = false;  // for the next frame
-    std::uint64_t frames_of_scene_ = 0;
+    std::uint64_t frames_of_scene_ = 0, frames_without_scene_ = 0;
     // Everything in the first view of a streamed scene is loaded, and that was reported.
     bool said_there_ = false;
     Pose room_from_head_;  // as last known

@@ -213,6 +213,17 @@ TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files,
           0);
 }
 
+TEST_CASE_FIXTURE(AtWork, "--frames counts those of the scene, not those before it is loaded") {
+    const ViewRun run = runClean(work, "late", "rate 90\nsize 96 96\nframes none\n",
+                                 "builtin:fence --mode shared --hide-hands --hide-panel --frames 12");
+    const std::vector<std::string> shows = run.lines("shows builtin:fence");
+    REQUIRE(shows.size() == 1);
+    const std::size_t before = std::stoul(shows[0].substr(shows[0].find(' ')));
+    CHECK(before > 4);  // in lock-step they come at once
+    CHECK(run.frames.size() >= before + 12);
+    CHECK(run.frames.size() <= before + 16);
+}
+
 TEST_CASE(
     "the wearer begins at the scene's own view, upright, wherever the runtime's spaces begin, and again when "
     "it recentres") {
