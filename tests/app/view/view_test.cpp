@@ -370,6 +370,18 @@ TEST_CASE_FIXTURE(AtWork, "bad input is known by its exit code, and named") {
         }
         CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
     }
+    // Neither headset nor window, in one line.
+    for (const std::string display : {"", ":9999"}) {
+        const Outcome outcome = work.run(
+            "builtin:fence", "XR_RUNTIME_JSON=/nonexistent/runtime.json WAYLAND_DISPLAY= DISPLAY=" + display);
+        INFO(outcome.output << outcome.errors);
+        CHECK(these(outcome.exit_code, outcome.output.empty()) == these(3, true));
+        CHECK(outcome.errors.starts_with(fmt::format(
+            "binosplat: no window: no display can be opened that Vulkan can show on (DISPLAY is {}, "
+            "WAYLAND_DISPLAY is not set); no headset: no OpenXR runtime found",
+            display.empty() ? "not set" : display)));
+        CHECK(std::ranges::count(outcome.errors, '\n') == 1);
+    }
     CHECK(std::filesystem::file_size(work.path / "mine" / "frame_000000.png") == 7);
     CHECK_FALSE(std::filesystem::exists(work.path / "mine" / "frames.jsonl"));
 }
