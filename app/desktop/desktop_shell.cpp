@@ -75,6 +75,7 @@ void DesktopShell::step() {
     last_step_ = Clock::now();
     const bool is_enough = options_.frames != 0 && log_.frame - pictures_without_scene_ >= options_.frames;
     if (isInterrupted() || window_.isClosed() || is_enough) { leaving_ = true; }
+    scenes_.freeGone();
     files_.deliver();
     dialogs_.deliver();
     if (const std::optional<std::string> outcome = writer_.takeOutcome()) { say(*outcome); }

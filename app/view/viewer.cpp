@@ -29,6 +29,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       renderer_(instance, context, options_.run, log_, connection_.format()),
       panel_(context, connection_.format()),
       commands_(context_),
+      waiting_(context_),
       probe_(context_),
       copy_(context_),
       notes_(files_, [this](const std::string& message) { say(message); }),
@@ -54,7 +55,7 @@ void Viewer::run() {
     try {
         while (options_.load_first && !scenes_.isComplete() && !leaving_) {
             if (isInterrupted()) { leave(); }
-            if (canTakeScene()) { takeScene(); }
+            if (canTakeScene(false)) { takeScene(); }
             if (scenes_.isOtherReady()) { takeOther(); }
             drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
@@ -108,8 +109,8 @@ bool Viewer::step() {
             break;
     }
     ++log_.frame;
-    return true;
     frames_without_scene_ += scenes_.get() == nullptr ? 1 : 0;
+    return true;
 }
 
 void Viewer::leave() {
