@@ -25,7 +25,19 @@ inline bool isAddress(std::string_view source) {
     return isPlainHttp(source) || beginsWith(source, "https://");
 }
 
-// Throws Error for an address that names a user, perhaps with a password; the message contains neither.
+// True for an address that others on the way could read and change: plain http, unless it is this machine's.
+inline bool isOpenOnTheWay(std::string_view source) {
+    if (!isPlainHttp(source)) { return false; }
+    std::string_view host = source.substr(source.find("//") + 2);
+    host = host.substr(0, host.find_first_of("/?#"));
+    host = host.substr(0, host.starts_with('[') ? host.find(']') : host.find(':'));
+    const bool is_number = host.find_first_not_of("0123456789.") == std::string_view::npos;
+    const bool is_own = (host.size() == 9 && beginsWith(host, "localhost")) || host == "[::1" ||
+                        (is_number && host.starts_with("127."));
+    return !is_own;
+}
+
+// Throws Error for an address that names a user, perhaps with a password; the message leaves both out.
 inline void requireNoUser(std::string_view source) {
     if (!isAddress(source)) { return; }
     const std::size_t host = source.find("//") + 2;

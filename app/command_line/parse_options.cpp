@@ -12,6 +12,7 @@
 #include <cctype>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 namespace binosplat {
@@ -131,6 +132,15 @@ std::vector<std::string> withCommand(std::vector<std::string> words) {
                     word, names));
 }
 
+// A command may be left out, which CLI11 does not know.
+struct HelpFormatter : CLI::Formatter {
+    std::string make_usage(const CLI::App* app, std::string name) const override {
+        if (app->get_parent() != nullptr) { return CLI::Formatter::make_usage(app, name); }
+        return "Usage: binosplat SCENE [OPTIONS]       show a scene, as `binosplat view` does\n"
+               "       binosplat SUBCOMMAND [OPTIONS]\n";
+    }
+};
+
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
@@ -143,6 +153,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     for (const std::string& word : words) { requireNoUser(word); }  // before any message repeats it
     words = withCommand(std::move(words));
     CLI::App app{"binosplat: Gaussian splatting scenes in stereo and in a VR headset", "binosplat"};
+    app.formatter(std::make_shared<HelpFormatter>());
     app.allow_windows_style_options(false);  // a path may begin with a slash there, too
     app.require_subcommand(1);
     app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));

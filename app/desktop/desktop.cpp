@@ -11,9 +11,7 @@ namespace binosplat {
 void runDesktop(const ViewOptions& options, const ViewSettings& settings) {
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
     if (windows == nullptr) {
-        throw Error(ExitCode::kNoDevice,
-                    "no window: there is no display that Vulkan can show on (DISPLAY and WAYLAND_DISPLAY); "
-                    "use `binosplat render`");
+        throw Error(ExitCode::kNoDevice, WindowSystem::whyNone() + "; use `binosplat render`");
     }
     ContextOptions context_options = contextOptions(options.run);
     context_options.instance_extensions = WindowSystem::instanceExtensions();

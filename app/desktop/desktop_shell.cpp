@@ -73,9 +73,9 @@ void DesktopShell::step() {
     window_.wait(secondsToWait());
     const double seconds = std::min(secondsSince(last_step_), 0.1);
     last_step_ = Clock::now();
-    if (isInterrupted() || window_.isClosed() || (options_.frames != 0 && log_.frame >= options_.frames)) {
-        leaving_ = true;
-    }
+    const bool is_enough = options_.frames != 0 && log_.frame - pictures_without_scene_ >= options_.frames;
+    if (isInterrupted() || window_.isClosed() || is_enough) { leaving_ = true; }
+    scenes_.freeGone();
     files_.deliver();
     dialogs_.deliver();
     if (const std::optional<std::string> outcome = writer_.takeOutcome()) { say(*outcome); }
@@ -254,7 +254,9 @@ void DesktopShell::show() {
         commands.submit(drawn);
     };
     is_shown_ = window_.show(compose);
-    if (is_shown_) { ++log_.frame; }
+    if (!is_shown_) { return; }
+    ++log_.frame;
+    pictures_without_scene_ += scenes_.get() == nullptr ? 1 : 0;
 }
 
 void DesktopShell::say(const std::string& message) {

@@ -128,7 +128,7 @@ private:
     Sight drawn_;
     bool is_refined_ = true, is_shown_ = true, leaving_ = false, writes_picture_ = false;
     int layouts_due_ = 2;  // widgets settle one layout after input
-    std::uint64_t shown_panel_ = 0, scene_frames_ = 0, moment_ = 0;
+    std::uint64_t shown_panel_ = 0, scene_frames_ = 0, pictures_without_scene_ = 0, moment_ = 0;
     Ruler ruler_;
     glm::dvec2 pressed_px_{0.0};  // the last press of the left button
     Clock::time_point pressed_at_{}, changed_at_{}, last_step_ = Clock::now();

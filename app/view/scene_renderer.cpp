@@ -98,6 +98,8 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
     };
     headset.inset_images.reset();
     make(headset.images, size_px);
+    // Before there is a scene, so that its first frame need not.
+    if (presenter_.pixels().bytes() == 0) { presenter_.reserve(size_px, headset.images->takesDepth()); }
     if (headset.inset) { make(headset.inset_images, inset_px); }
 }
 
@@ -168,7 +170,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.mark = governed_count_;
     frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
     frame.keep_history = true;
-    frame.waits_after_jump = false;
+    frame.waits_for_lists = false;
     frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
@@ -179,8 +181,8 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     return frame;
 }
 
-void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
-                            const ViewSettings& settings, FrameViews& views) {
+void SceneRenderer::aim(ConnectedHeadset& headset, const Similarity& scene_from_room,
+                        const ViewSettings& settings, FrameViews& views) {
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views);
     eyes_.clear();
     inset_eyes_.clear();
@@ -195,6 +197,35 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
         axes_ = StayingAxes(glm::radians(kAxesMarginDegrees));
     }
     if (headset.inset) { aimInsets(headset, scene_from_room, views); }
+}
+
+FramesWanted SceneRenderer::framesWanted(const ConnectedHeadset& headset,
+                                         const Similarity& there_from_here) const {
+    const auto there = [&](const auto& eyes) {
+        std::vector<Eye> moved(eyes.begin(), eyes.end());
+        for (Eye& eye : moved) { eye.world_from_camera = transform(there_from_here, eye.world_from_camera); }
+        return moved;
+    };
+    const auto scaled = [&](FrameSettings frame) {
+        frame.near *= there_from_here.scale;
+        frame.units_per_metre *= there_from_here.scale;
+        frame.hidden_tiles = {};
+        return frame;
+    };
+    FramesWanted wanted{there(eyes_), scaled(frame_), {}, {}, {}};
+    for (std::size_t e = 0; e < wanted.hidden_tiles.size(); ++e) {
+        wanted.hidden_tiles[e].assign(frame_.hidden_tiles[e].begin(), frame_.hidden_tiles[e].end());
+    }
+    if (headset.inset) {
+        wanted.inset_eyes = there(inset_eyes_);
+        wanted.inset_settings = scaled(inset_frame_);
+    }
+    return wanted;
+}
+
+void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
+                            const ViewSettings& settings, FrameViews& views) {
+    aim(headset, scene_from_room, settings, views);
     std::vector<Eye> all = eyes_;
     all.insert(all.end(), inset_eyes_.begin(), inset_eyes_.end());
     shown.follow(all, headset.session.stepSeconds());

@@ -46,8 +46,14 @@ public:
     // For a runtime that turned out to refuse depth; returns false if depth was already off.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show of the scene, and sets the pictures of `views`. Throws Error if memory
-    // is short; then nothing is shown until this succeeds with less.
+    // Chooses the eyes and the settings of a frame of a scene, and sets the pictures of `views`.
+    void aim(ConnectedHeadset& headset, const Similarity& scene_from_room, const ViewSettings& settings,
+             FrameViews& views);
+    // Frames like that one, of another scene.
+    [[nodiscard]] FramesWanted framesWanted(const ConnectedHeadset& headset,
+                                            const Similarity& there_from_here) const;
+    // Aims, and prepares what render() will show of the scene that is drawn. Throws Error if memory is short;
+    // then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
                  const ViewSettings& settings, FrameViews& views);
     // See ShownScene; call this once that is prepared.

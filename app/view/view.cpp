@@ -184,8 +184,12 @@ void runView(const ViewOptions& asked) {
         viewInHeadset(options, has_headset);
     } catch (const Error& error) {
         const bool must_have_one = has_headset || options.simulate || options.headset_only;
-        if (must_have_one || error.code() != ExitCode::kNoDevice || !hasDisplay()) { throw; }
-        FrameLog::print(fmt::format("{}; the scene is shown in a window", error.what()));
+        if (must_have_one || error.code() != ExitCode::kNoDevice) { throw; }
+        if (!hasDisplay() || !WindowSystem::find()) {
+            throw Error(ExitCode::kNoDevice,
+                        fmt::format("{}; no headset: {}", WindowSystem::whyNone(), error.what()));
+        }
+        FrameLog::print(fmt::format("the scene is shown in a window; no headset: {}", error.what()));
         showInWindow();
     }
 }

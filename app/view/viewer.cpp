@@ -29,6 +29,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       renderer_(instance, context, options_.run, log_, connection_.format()),
       panel_(context, connection_.format()),
       commands_(context_),
+      waiting_(context_),
       probe_(context_),
       copy_(context_),
       notes_(files_, [this](const std::string& message) { say(message); }),
@@ -54,15 +55,15 @@ void Viewer::run() {
     try {
         while (options_.load_first && !scenes_.isComplete() && !leaving_) {
             if (isInterrupted()) { leave(); }
-            if (canTakeScene()) { takeScene(); }
+            if (canTakeScene(false)) { takeScene(); }
             if (scenes_.isOtherReady()) { takeOther(); }
             drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
         }
         for (bool goes_on = true; goes_on;) {
-            if (!leaving_ && (isInterrupted() || (options_.frames != 0 && log_.frame >= options_.frames))) {
-                leave();
-            }
+            const bool is_enough =
+                options_.frames != 0 && log_.frame - frames_without_scene_ >= options_.frames;
+            if (!leaving_ && (isInterrupted() || is_enough)) { leave(); }
             try {
                 goes_on = connection_.headset() != nullptr ? step() : comeBack();
             } catch (const xr::Lost& lost) {
@@ -108,6 +109,7 @@ bool Viewer::step() {
             break;
     }
     ++log_.frame;
+    frames_without_scene_ += scenes_.get() == nullptr ? 1 : 0;
     return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include "app/view/files/picture_writer.h"
 #include "app/view/headset/headset_connection.h"
+#include "app/view/headset/waiting_frames.h"
 #include "app/view/panel/first_steps.h"
 #include "app/view/panel/panel.h"
 #include "app/view/placement/ruler.h"
@@ -47,9 +48,13 @@ private:
     void drawFrame();
     // Keeps the window alive while no frame is drawn for the headset.
     void drawWindowAlone(const std::string& why);
-    // True if the next scene is loaded, and nothing is being done with this one.
-    [[nodiscard]] bool canTakeScene() const { return scenes_.isNextReady() && !pictures_.isTaking(); }
+    // True if the next scene is loaded, and nothing is being done with this one; with its frames if `met`.
+    [[nodiscard]] bool canTakeScene(bool met) const {
+        return (met ? scenes_.isNextMet() : scenes_.isNextReady()) && !pictures_.isTaking();
+    }
     void takeScene();
+    // Has frames made for the scene that comes next, as it will be seen from where the wearer is.
+    void meetComing(FrameViews& views);
     // Optional: if drawing in the window fails, a line says why.
     void openWindow(EventWindow& window);
     // Moves the room's origin to the head, once its pose is known or on request.
@@ -133,12 +138,13 @@ private:
     double message_seconds_ = 0.0;  // left for the one shown
     bool is_new_view_ = false;      // another scene or another origin of the room, in this frame
     GazeFollower gaze_;
-    Commands commands_;
+    Commands commands_;  // for the window alone
+    WaitingFrames waiting_;
     SceneProbe probe_;
     ProbesSeen probes_seen_;  // where hands point, and the ground
     PictureCopy copy_;
     bool picture_asked_ = false;  // for the next frame
-    std::uint64_t frames_of_scene_ = 0;
+    std::uint64_t frames_of_scene_ = 0, frames_without_scene_ = 0;
     // Everything in the first view of a streamed scene is loaded, and that was reported.
     bool said_there_ = false;
     Pose room_from_head_;  // as last known

@@ -25,6 +25,15 @@ void Viewer::takeScene() {
     notes_.remember(scenes_.name(), complaint);
 }
 
+void Viewer::meetComing(FrameViews& views) {
+    const std::optional<Similarity> there = scenes_.placeWithoutFrames(state_);
+    if (!there) { return; }
+    const bool shows = scenes_.get() != nullptr;
+    const Similarity drawn = shows ? scenes_.drawnFrom(state_.sceneFromRoom()) : *there;
+    if (!shows) { renderer_.aim(headset(), drawn, drawn_, views); }
+    scenes_.makeFrames(renderer_.framesWanted(headset(), compose(*there, inverse(drawn))));
+}
+
 void Viewer::takeOther() {
     if (const std::string complaint = scenes_.takeOther(); !complaint.empty()) { return say(complaint); }
     other_asked_ = false;

@@ -57,8 +57,8 @@ void Viewer::drawFrame() {
     }
     renderer_.meetDisplay(headset().session);
     files_.deliver();
-    if (canTakeScene() && hasKeptPicture()) { takeScene(); }
-    if (scenes_.isOtherReady()) { takeOther(); }
+    if (canTakeScene(true) && hasKeptPicture()) { takeScene(); }
+    if (scenes_.isOtherMet()) { takeOther(); }
     FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
@@ -104,10 +104,12 @@ void Viewer::drawFrame() {
     }
     // Last, since the panel and the window may change the settings.
     const bool fits = prepareScene(views);
+    if (fits) { meetComing(views); }
     onWindow(&MirrorWindow::acquire);
     const bool takes_picture = std::exchange(picture_asked_, false) && scenes_.get() != nullptr && fits;
     if (scenes_.get() != nullptr && fits) {
         meetOther();
+        waiting_.passOver();
         renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) {
             recordPanel(commands);
             recordProbe(commands);
@@ -248,17 +250,17 @@ void Viewer::renderWaiting() {
     for (EyeImages* images : all) {
         for (const int e : {kLeft, kRight}) { images->acquire(e, false); }
     }
-    commands_.begin();
+    scenes_.passOver(true);
+    Commands& commands = waiting_.begin();
     const glm::dvec3& background = options_.run.camera.background;
     const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
     const glm::vec4 colour =
         renderer_.seesThrough(state_.settings()) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
     for (EyeImages* images : all) {
-        for (const int e : {kLeft, kRight}) { images->clear(commands_, e, colour); }
+        for (const int e : {kLeft, kRight}) { images->clear(commands, e, colour); }
     }
-    recordPanel(commands_);
-    commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
-    commands_.wait();
+    recordPanel(commands);
+    waiting_.submit(window_ ? window_->drawn() : vk::Semaphore());
 }
 
 void Viewer::showFrame(const FrameViews& views) {

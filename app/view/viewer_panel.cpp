@@ -43,7 +43,7 @@ void Viewer::drawWindowAlone(const std::string& why) {
     const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
     last_alone_ = now;
     files_.deliver();
-    if (canTakeScene()) {
+    if (canTakeScene(false)) {
         keepPictureAtOnce();
         takeScene();
     }

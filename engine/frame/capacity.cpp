@@ -46,15 +46,19 @@ WarpBufferNeeds needsOf(const TargetPlan& target) {
 
 FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity,
                      std::function<void()> wait_for_frames)
-    : context_(context), first_capacity_(first_capacity), wait_for_frames_(std::move(wait_for_frames)) {
+    : context_(context),
+      first_capacity_(first_capacity),
+      wait_for_frames_(std::move(wait_for_frames)),
+      longer_(context) {
     shown_.reserve(kMostTargets);
     while (shown_.size() < kMostTargets) { shown_.emplace_back(context); }
 }
 
 void FrameRoom::show(const GpuScene& scene) {
+    longer_.drop();
     lists_ = makeFrameBuffers(context_, scene.splatCount(), scene.isInPages());
     scene_ = &scene;
-    first_frame_ = room_ahead_fits_ = true;
+    first_frame_ = room_ahead_fits_ = fits_beside_ = true;
 }
 
 void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes) {
@@ -65,7 +69,9 @@ void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes) {
 }
 
 void FrameRoom::growLists(const FrameCapacity& capacity) {
-    if (capacity != lists_.capacity()) { wait_for_frames_(); }
+    if (capacity == lists_.capacity()) { return; }
+    wait_for_frames_();
+    longer_.drop();
     growFrameBuffers(context_, lists_, capacity);
 }
 
@@ -178,6 +184,7 @@ void FrameRoom::fitPictures(const FramePlan& plan,
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(moments_, "inverse depth moments", moments_bytes);
+    if (plan.keeps_history && scene_->isInPages()) { (void)changedRects(); }
     const auto at_once = static_cast<std::uint64_t>(std::max(plan.at_once, plan.at_once_ahead));
     resize(lists_.tile_ranges, "tile ranges",
            most_tiles * std::max(at_once * sizeof(gpu::uvec2), coarse ? sizeof(gpu::uvec3) : 0));
@@ -312,5 +319,33 @@ void FrameRoom::makeRoomAhead(const FramePlan& plan, const FrameState& state) {
     if (!room_ahead_fits_ || hasRoom(plan, state, kRoomAhead)) { return; }
     room_ahead_fits_ = tryToGrow(roomFor(plan, state, kRoomAhead, spareFor(kRoomAhead)));
 }
+
+void FrameRoom::growBeside(const FramePlan& plan, const FrameState& state) {
+    if (longer_.isUnderWay()) { return; }
+    std::vector<FrameCapacity> wanted;
+    are_ahead_.clear();
+    const auto want = [&](double ahead, double spare) {
+        const FrameCapacity capacity = roomFor(plan, state, ahead, spare);
+        if (capacity == lists_.capacity()) { return; }
+        wanted.push_back(capacity);
+        are_ahead_.push_back(ahead > 1.0);
+    };
+    if (room_ahead_fits_) { want(kRoomAhead, spareFor(kRoomAhead)); }
+    if (isCutShort(state)) {
+        want(1.0, spareFor(1.0));
+        want(1.0, 1.0);
+    }
+    if (!wanted.empty()) { longer_.begin(lists_.capacity(), std::move(wanted)); }
+}
+
+void FrameRoom::learnWhichFitted(std::optional<std::size_t> which) {
+    if (!which) { return; }
+    fits_beside_ = *which < are_ahead_.size();
+    if (fits_beside_) { room_ahead_fits_ = are_ahead_[*which]; }
+}
+
+void FrameRoom::bringLonger() { learnWhichFitted(longer_.bring(lists_)); }
+
+void FrameRoom::finishLonger() { learnWhichFitted(longer_.finish(lists_)); }
 
 }  // namespace binosplat

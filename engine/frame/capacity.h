@@ -2,6 +2,7 @@
 // frames themselves find out.
 #pragma once
 
+#include "engine/frame/longer_lists.h"
 #include "engine/frame/plan.h"
 #include "engine/passes/shown_tiles.h"
 #include "engine/passes/warp_buffers.h"
@@ -9,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,6 +57,17 @@ public:
     // themselves do.
     void makeRoomAhead(const FramePlan& plan, const FrameState& state);
     [[nodiscard]] bool fitsAhead() const { return room_ahead_fits_; }
+
+    // The same without a wait: begins to make lists that are long enough, with room ahead, beside the frames.
+    // Does nothing if they are, or while some are being made.
+    void growBeside(const FramePlan& plan, const FrameState& state);
+    // False: the device lacked the memory for these and the present ones at a time. Then only the calls above
+    // help.
+    [[nodiscard]] bool growsBeside() const { return fits_beside_; }
+    // Before each frame, once all but the last one have finished: brings lists that have been made.
+    void bringLonger();
+    // While no frame is on the device: waits for those, and brings them.
+    void finishLonger();
     // The frame had room.
     void haveFrame() { first_frame_ = false; }
 
@@ -72,7 +85,8 @@ public:
     }
     // Where lists of the target, and of those that are rendered with it, may lie.
     [[nodiscard]] EmptyPictures emptyPictures(const FramePlan& plan, const TargetPlan& target) const;
-    // For the scene's changes, in all pictures of a frame: made when it is first needed.
+    // For the scene's changes, in all pictures of a frame: made when it is first needed, or with the
+    // pictures.
     [[nodiscard]] const Buffer& changedRects();
     // Call this before the passes of a frame.
     void recordShown(Commands& commands);
@@ -95,6 +109,7 @@ private:
     [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead,
                                         double spare) const;
     [[nodiscard]] double spareFor(double ahead) const;
+    void learnWhichFitted(std::optional<std::size_t> which);
 
     const Context& context_;
     const GpuScene* scene_ = nullptr;
@@ -109,6 +124,9 @@ private:
     Buffer changed_rects_;
     bool first_frame_ = true;
     bool room_ahead_fits_ = true;  // in the device's memory
+    bool fits_beside_ = true;
+    std::vector<bool> are_ahead_;  // of the lists that are being made, one after the other until one fits
+    LongerLists longer_;           // last: its thread ends first
 };
 
 }  // namespace binosplat

@@ -61,9 +61,9 @@ struct FrameSettings {
     // kAlternate, kTemporal: more frames follow, and are made from this one; this one may be made from the
     // one before, if that had keep_history, too.
     bool keep_history = false;
-    // renderAhead: a frame after a jump of the eyes is waited for, so that it is whole even if its lists were
-    // too short; otherwise it is not, and whoever shows it may hide that.
-    bool waits_after_jump = true;
+    // renderAhead: a frame after a jump of the eyes, or after lists were too short, is waited for, so that it
+    // is whole; otherwise it is not, and whoever shows frames may hide the few until longer lists are made.
+    bool waits_for_lists = true;
     bool times_passes = true;  // for FrameResult::gpu_ms: two timestamps per pass instead of two per frame
     // kTemporal: frames also measure what half of the resolution would lose, taking turns with one part of
     // their tiles each: this is the turn. If it is the number of parts, or more, they do not.

@@ -63,12 +63,6 @@ void StereoFrame::rebuildKernels() {
     kernels_.rebuild();
 }
 
-void StereoFrame::takeKernels(StereoFrame& from) {
-    finish();
-    from.finish();
-    kernels_.take(from.kernels_);
-}
-
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
     finish();
     histories_ = {};
@@ -120,6 +114,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                     const Append& append, vk::Semaphore signals) {
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
+    room_.bringLonger();
     // Lists have capacity for patches while there is a history, and for whole pictures after it.
     const bool has_history = histories_.of_eyes[0] && settings.keep_history;
     const bool was_warped = std::ranges::any_of(
@@ -128,13 +123,16 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                (was_warped && changedShare(eyes, settings) > kMostChanged));
     const Likeness likeness = likenessToLast(eyes, settings);
     const bool jumps = loses_history || likeness == Likeness::kJumps;
+    const bool grows_beside = !settings.waits_for_lists && room_.growsBeside();
     bool waits = room_.isFirstFrame() || likeness == Likeness::kOther ||
-                 (jumps && settings.waits_after_jump) || FrameRoom::isCutShort(state_);
+                 (jumps && settings.waits_for_lists) || (FrameRoom::isCutShort(state_) && !grows_beside);
     // Lists fill up gradually: they are made longer before they are full, while nothing uses them.
-    const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
+    const bool is_short =
+        result && !grows_beside && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
+    if (result && grows_beside) { room_.growBeside(plan_, stateAhead()); }
     if (waits || is_short) {
         if (auto newer = land(last)) { result = std::move(newer); }
-        waits = waits || FrameRoom::isCutShort(state_);
+        waits = waits || (FrameRoom::isCutShort(state_) && !grows_beside);
         if (is_short) { room_.makeRoomAhead(plan_, stateAhead()); }
     }
     prepare(eyes, settings);
@@ -167,6 +165,7 @@ void StereoFrame::passOver() {
 
 std::optional<FrameResult> StereoFrame::finish() {
     std::optional<FrameResult> older = land(flights_[turn_]), newer = land(flights_[1 - turn_]);
+    room_.finishLonger();
     return newer ? std::move(newer) : std::move(older);
 }
 

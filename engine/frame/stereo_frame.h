@@ -20,11 +20,15 @@ public:
     static constexpr double kRoomAhead = FrameRoom::kRoomAhead;
 
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
+    // With `kernels`, which outlive it, and which frames on other threads may use, too.
+    StereoFrame(const Context& context, const GpuScene& scene, PassKernels& kernels,
+                const FrameOptions& options = {})
+        : StereoFrame(context, scene, options, &kernels) {}
     StereoFrame(const StereoFrame&) = delete;
     StereoFrame& operator=(const StereoFrame&) = delete;
     ~StereoFrame();
     // Another frame of the scene that `other` shows, with pictures and histories of its own. It uses the
-    // kernels of `other`, which must outlive it, and on the same thread.
+    // kernels of `other`, which must outlive it.
     static std::unique_ptr<StereoFrame> beside(StereoFrame& other);
 
     // Frames show `scene` from now on, which is on the same device. Kernels stay compiled. Waits for frames
@@ -43,11 +47,12 @@ public:
     // draws one frame while the next is prepared. Lists have more capacity than the last frame needed. A
     // frame whose lists are still too short shows background once and is counted ("frames_cut_short"), and
     // the frame after it is waited for. So is a frame that has little in common with the previous one: the
-    // first one, one with another size or mode, and one after a jump of the eyes, unless the settings say
-    // otherwise (FrameSettings::waits_after_jump). If a list is too short in a frame that is waited for, the
-    // frame is rendered once more before it is shown ("frames_done_again"). What it needs is counted or, if
-    // that is not possible, guessed, so even then it is seldom cut short. `signals`, if given, is signalled
-    // when the frame is done.
+    // first one, one with another size or mode, and one after a jump of the eyes. If a list is too short in a
+    // frame that is waited for, the frame is rendered once more before it is shown ("frames_done_again").
+    // What it needs is counted or, if that is not possible, guessed, so even then it is seldom cut short. If
+    // the settings say so (FrameSettings::waits_for_lists), only the first frame and those with another size
+    // or mode are waited for: longer lists are made on a thread, and a later frame uses them. `signals`, if
+    // given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {},
                                            vk::Semaphore signals = {});
@@ -76,16 +81,12 @@ public:
     // frame, for which it waits. Throws Error if the device does not have enough memory; then no pictures are
     // left, and frames as before may still be rendered.
     void reserve(std::span<const Eye> eyes, const FrameSettings& settings);
-    // Waits for all frames in flight, so that nothing they used is in use any more. Returns the last one's
-    // result.
+    // Waits for all frames in flight, after which nothing that they use is in use, and for lists that are
+    // being made. Returns the last one's result.
     std::optional<FrameResult> finish();
     // Makes all kernels again, see Context::replacedShaders. Throws Error if one cannot be made; then some
     // are new and some old.
     void rebuildKernels();
-    // Takes over the kernels of a frame with the same device and options, and keeps its own that the other
-    // lacks, so that kernels made for one scene need not be made again for the next. If the other frame goes
-    // on, it makes the kernels that it lacks again.
-    void takeKernels(StereoFrame& from);
     // The number of its kernels.
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     // Makes the kernels for such frames, so that they do not wait for a driver's compiler: records them, but

@@ -146,18 +146,21 @@ Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t 
 const Kernel& KernelCache::find(const std::string& shader, std::uint32_t push_bytes,
                                 const std::vector<std::uint32_t>& constants) {
     auto key = std::make_pair(shader, constants);
-    auto found = kernels_.find(key);
-    if (found == kernels_.end()) {
-        assert(std::ranges::any_of(table_, [&](const KernelVariant& variant) {
-            return variant.shader == shader && variant.push_bytes == push_bytes &&
-                   variant.values() == constants;
-        }));
-        found = kernels_.emplace(std::move(key), Kernel(context_, shader, push_bytes, constants)).first;
+    {
+        const std::lock_guard lock(mutex_);
+        if (const auto found = kernels_.find(key); found != kernels_.end()) { return found->second; }
     }
-    return found->second;
+    assert(std::ranges::any_of(table_, [&](const KernelVariant& variant) {
+        return variant.shader == shader && variant.push_bytes == push_bytes && variant.values() == constants;
+    }));
+    // Unlocked, since a compiler takes long: of two threads that make the same one, the first keeps it.
+    Kernel made(context_, shader, push_bytes, constants);
+    const std::lock_guard lock(mutex_);
+    return kernels_.try_emplace(std::move(key), std::move(made)).first->second;
 }
 
 void KernelCache::rebuild() {
+    const std::lock_guard lock(mutex_);
     decltype(kernels_) anew;
     for (const auto& [key, kernel] : kernels_) {
         anew.emplace(key, Kernel(context_, key.first, kernel.pushBytes(), key.second));

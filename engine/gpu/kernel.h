@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,27 +39,24 @@ private:
     vk::PipelineShaderStageCreateFlags subgroups_;
 };
 
-// Kernels, made when they are first needed, so that a mode does not pay for another's.
+// Kernels, made when they are first needed: a mode does not pay for another's. For any thread.
 class KernelCache {
 public:
     // `table`: all kernels that will ever be requested.
     KernelCache(const Context& context, KernelTable table) : context_(context), table_(std::move(table)) {}
-    // A kernel from the table; the reference stays valid until rebuild() or take().
+    // One of the table; the reference stays valid until rebuild().
     template <typename K>
     const Kernel& get(const K& kernel) {
         return find(K::kShader, sizeof(typename K::Pass), valuesOf(kernel));
     }
     [[nodiscard]] const KernelTable& table() const { return table_; }
-    [[nodiscard]] std::size_t size() const { return kernels_.size(); }
-    // Makes all of them again, see Context::replacedShaders. Throws as Kernel does, and then keeps the old
-    // ones.
-    void rebuild();
-    // Takes over the kernels of another cache for the same device, keeps its own that the other lacks, and
-    // gives the other the rest.
-    void take(KernelCache& from) {
-        from.kernels_.merge(kernels_);
-        kernels_.swap(from.kernels_);
+    [[nodiscard]] std::size_t size() const {
+        const std::lock_guard lock(mutex_);
+        return kernels_.size();
     }
+    // Makes all of them again, see Context::replacedShaders, while nobody uses any. Throws as Kernel does,
+    // and then keeps the old ones.
+    void rebuild();
 
 private:
     const Kernel& find(const std::string& shader, std::uint32_t push_bytes,
@@ -66,6 +64,7 @@ private:
 
     const Context& context_;
     KernelTable table_;
+    mutable std::mutex mutex_;  // guards the map, not what it holds
     std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> kernels_;
 };
 

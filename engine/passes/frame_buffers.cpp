@@ -118,6 +118,20 @@ FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count,
     return buffers;
 }
 
+namespace {
+
+std::uint64_t scratchBytes(FrameCapacity capacity) {
+    return std::max({VisibleBuffers::groupSumBytes(capacity.visible) + sizeof(gpu::uint),
+                     Sort::histogramBytes(capacity.visible),
+                     Sort::histogramBytes(4 * std::uint64_t{capacity.pairs})});
+}
+
+Buffer makeScratch(const Context& context, FrameCapacity capacity) {
+    return {context, "sums and sort scratch", scratchBytes(capacity)};
+}
+
+}  // namespace
+
 void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity) {
     if (buffers.visible.capacity() != capacity.visible) {
         buffers.visible = {};
@@ -127,13 +141,29 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.pairs = {};
         buffers.pairs = PairBuffers(context, capacity.pairs);
     }
-    const std::uint64_t scratch_bytes = std::max(
-        {VisibleBuffers::groupSumBytes(capacity.visible) + sizeof(gpu::uint),
-         Sort::histogramBytes(capacity.visible), Sort::histogramBytes(4 * std::uint64_t{capacity.pairs})});
-    if (buffers.scratch.bytes() != scratch_bytes) {
+    if (buffers.scratch.bytes() != scratchBytes(capacity)) {
         buffers.scratch = {};
-        buffers.scratch = Buffer(context, "sums and sort scratch", scratch_bytes);
+        buffers.scratch = makeScratch(context, capacity);
     }
+}
+
+FrameLists makeLongerLists(const Context& context, FrameCapacity now, FrameCapacity wanted) {
+    FrameLists lists;
+    if (now.visible != wanted.visible) { lists.visible = VisibleBuffers(context, wanted.visible); }
+    if (now.pairs != wanted.pairs) { lists.pairs = PairBuffers(context, wanted.pairs); }
+    if (scratchBytes(now) != scratchBytes(wanted)) { lists.scratch = makeScratch(context, wanted); }
+    return lists;
+}
+
+FrameLists exchangeLists(FrameBuffers& buffers, FrameLists longer) {
+    FrameLists before;
+    const auto exchange = [](auto& from, auto& to, auto& out) {
+        if (from.bytes() > 0) { out = std::exchange(to, std::move(from)); }
+    };
+    exchange(longer.visible, buffers.visible, before.visible);
+    exchange(longer.pairs, buffers.pairs, before.pairs);
+    exchange(longer.scratch, buffers.scratch, before.scratch);
+    return before;
 }
 
 }  // namespace binosplat

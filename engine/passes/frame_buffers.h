@@ -141,17 +141,21 @@ private:
     Buffer buffer_;
 };
 
+// What grows with what the eyes see.
+struct FrameLists {
+    VisibleBuffers visible;
+    PairBuffers pairs;
+    Buffer scratch;  // sums of workgroups or histograms of the list at hand
+};
+
 // Everything on which the passes of one frame work, except the pictures.
-struct FrameBuffers {
+struct FrameBuffers : FrameLists {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState
     Buffer visibility;  // one bit per splat, then one count per workgroup and per run of these
     // For a scene in pages: the list, a word per run of it, then one bit per page, then one count per word of
     // these.
     Buffer pages;
-    VisibleBuffers visible;
-    PairBuffers pairs;
-    Buffer scratch;  // sums of workgroups or histograms of the list at hand
     // One uvec2 per tile for all that are rendered at once; then, if tiles may be coarse, a list of those
     // with pairs.
     Buffer tile_ranges;
@@ -192,5 +196,10 @@ struct FrameBuffers {
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count, bool in_pages = false);
 // Provides capacity; the lists' contents are lost, and memory for more than the new size is never held.
 void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity);
+// What lists of the capacity `now` lack for `wanted`; those that are long enough are left out. On any thread.
+// Throws Error if the device lacks the memory.
+FrameLists makeLongerLists(const Context& context, FrameCapacity now, FrameCapacity wanted);
+// Puts them into `buffers`, which have the capacity that they were made for, and returns what was there.
+FrameLists exchangeLists(FrameBuffers& buffers, FrameLists longer);
 
 }  // namespace binosplat

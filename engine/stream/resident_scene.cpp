@@ -190,11 +190,10 @@ std::vector<ResidentScene::PageCopy> ResidentScene::takeWaiting() {
 }
 
 void ResidentScene::recordChanges(Commands& commands) {
+    // As much in each frame, so that none but the first ones make it.
+    const std::uint64_t most_pages = std::min<std::uint64_t>(capacityPages(), most_pages_a_frame_);
+    const Buffer& staging = commands.staging(most_pages * page_bytes_ + capacityPages() * kEntryBytes);
     if (!hasChanges()) { return; }
-    std::uint64_t waiting_pages = 0;
-    for (const Part part : waiting_) { waiting_pages += parts_[part].pages_to_copy; }
-    const Buffer& staging = commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ +
-                                             scene_.table_.bounds.size() * kEntryBytes);
     const std::vector<PageCopy> copies = takeWaiting();
     std::ranges::sort(changed_);
     std::uint8_t* const to = staging.mapped<std::uint8_t>().data();

@@ -12,6 +12,17 @@ nlohmann::json reportOf(const Workplace& work, const std::string& folder) {
 
 SCRIPT(cli, "app/cli") { runProgramScript(); }
 
+TEST_CASE_FIXTURE(AtWork, "help begins with the shortest way to see a scene; commands have their own usage") {
+    const auto usageOf = [&](const std::string& arguments) {
+        const std::string help = work.go(arguments).output;
+        return help.substr(help.find("Usage: "), help.find("\n\n") - help.find("Usage: "));
+    };
+    CHECK(usageOf("--help") ==
+          "Usage: binosplat SCENE [OPTIONS]       show a scene, as `binosplat view` does\n"
+          "       binosplat SUBCOMMAND [OPTIONS]");
+    CHECK(usageOf("info --help").starts_with("Usage: binosplat info "));
+}
+
 TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
     const std::string float_extension = extensionOf(PictureKind::kFloat),
                       display_extension = extensionOf(PictureKind::kDisplay);

@@ -31,10 +31,15 @@ TEST_CASE_FIXTURE(AtWork,
         return answer("200 OK", "ETag: \"1\"\r\n", bytes);
     });
     const std::string address = server.at("/wall.ply");
+    CHECK(replaced(done("info " + address + " --cache-limit 0"), address, "wall.ply") == near);
+    // Another machine's, from where it comes by others.
+    const std::string of_others = "http://scenes.example/wall.ply";
+    const Outcome by_proxy = work.go("info " + of_others + " --cache-limit 0",
+                                     environmentOf(work) + " http_proxy=" + server.at(""));
     const std::string note =
-        "note               " + address +
+        "note               " + of_others +
         ": came by http, so others on the way could read and change it; https is safer\n";
-    CHECK(replaced(done("info " + address + " --cache-limit 0"), address, "wall.ply") == near + note);
+    CHECK(replaced(by_proxy.output, of_others, "wall.ply") == near + note);
     CHECK(filesIn(work.base / "caches/binosplat/web").empty());
     done("render " + address + " --out far" + camera);
     CHECK(filesIn(work.base / "caches/binosplat/web").size() == 2);

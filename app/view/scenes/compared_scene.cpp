@@ -7,9 +7,9 @@
 namespace binosplat {
 
 std::string ShownScene::toggleComparison() {
-    if (other_.scene || other_loader_) {
-        const std::string was = other_.scene ? other_.scene->name : other_loader_->scene();
-        giveUp(other_loader_);
+    if (other_.scene || other_next_.loader) {
+        const std::string was = other_.scene ? other_.scene->name : other_next_.loader->scene();
+        giveUp(other_next_);
         dropOther();
         return fmt::format("{} is no longer compared with", was);
     }
@@ -20,35 +20,32 @@ std::string ShownScene::toggleComparison() {
 
 void ShownScene::beginOther(const std::string& scene) {
     dropOther();  // never more than two
-    giveUp(other_loader_);
+    giveUp(other_next_);
     ++asked_count_;
     RunOptions run = options_.run;  // a given place belongs to the first one
     run.camera.cameras_file.clear();
     run.camera.eye = run.camera.look = run.camera.up = std::nullopt;
-    other_loader_ =
-        std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
+    other_next_.loader = makeLoader(scene, std::move(run));
 }
 
 void ShownScene::dropOther() {
     draw(false);
     if (maker_ && made_for_ == &other_) { maker_.reset(); }
-    // Frames wait for the device before the scene that they read goes.
-    other_.insets.reset();
-    other_.frame.reset();
-    other_ = {};
+    letGo(other_);
 }
 
 std::string ShownScene::takeOther() {
-    const std::unique_ptr<SceneLoader> loader = std::move(other_loader_);
-    other_name_ = loader->scene();
+    Coming coming = std::exchange(other_next_, {});
+    other_name_ = coming.loader->scene();
     try {
-        std::unique_ptr<LoadedScene> taken = loader->take();
+        std::unique_ptr<LoadedScene> taken = coming.loader->take();
         maker_.reset();
-        other_.frame = StereoFrame::beside(*shown_.frame);
-        other_.frame->show(taken->gpu_scene);
+        other_.frames = takeFrames(coming);
+        if (!other_.frames.frame) {
+            other_.frames.frame = std::make_unique<StereoFrame>(context_, taken->gpu_scene, kernels_);
+        }
         other_.scene = std::move(taken);
-        if (const auto kernels = std::exchange(other_.scene->kernels, nullptr)) { takeKernels(*kernels); }
-        if (ahead_) { haveReady(other_, loader->madeFor()); }
+        if (ahead_) { haveReady(other_, coming.loader->madeFor()); }
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         dropOther();
         return error.what();
@@ -60,6 +57,7 @@ std::string ShownScene::takeOther() {
 
 std::string ShownScene::goOnAlone(const Error& error) {
     dropOther();
+    freeGone();
     const auto* const of_device = dynamic_cast<const DeviceError*>(&error);
     if (of_device == nullptr || of_device->kind() != DeviceError::Kind::kMemory) { return error.what(); }
     return fmt::format("{} and {} do not fit into the device's memory together: the first one stays",
@@ -69,24 +67,24 @@ std::string ShownScene::goOnAlone(const Error& error) {
 void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame,
                            std::span<const Eye> inset_eyes, const FrameSettings& inset) {
     if (!other_.scene || draws_other_) { return; }
-    const glm::uvec3 shape(eyes.front().size_px, frame.hidden_tiles[0].size());
-    if (std::exchange(other_.met, shape) == shape) { return; }
+    const glm::uvec3 shape = shapeOfFrames(eyes, frame);
+    if (std::exchange(other_.frames.shape, shape) == shape) { return; }
     const auto meet = [&](StereoFrame& other, std::span<const Eye> seen, const FrameSettings& settings) {
         const std::vector<Eye> there = seenFromResting(seen);
         other.reserve(there, settings);
         // Each has memory of its own.
         for (int turn = 0; turn < 2; ++turn) { (void)other.renderAhead(there, settings); }
     };
-    meet(*other_.frame, eyes, frame);
+    meet(*other_.frames.frame, eyes, frame);
     if (inset_eyes.empty()) { return; }
-    if (!other_.insets) { other_.insets = StereoFrame::beside(*other_.frame); }
-    meet(*other_.insets, inset_eyes, inset);
+    if (!other_.frames.insets) { other_.frames.insets = StereoFrame::beside(*other_.frames.frame); }
+    meet(*other_.frames.insets, inset_eyes, inset);
 }
 
 void ShownScene::draw(bool other) {
     other = other && other_.scene;
     if (std::exchange(draws_other_, other) == other) { return; }
-    for (StereoFrame* const frame : {drawing().frame.get(), drawing().insets.get()}) {
+    for (StereoFrame* const frame : {drawing().frames.frame.get(), drawing().frames.insets.get()}) {
         if (frame != nullptr) { frame->forgetHistory(); }
     }
 }
@@ -119,12 +117,6 @@ void ShownScene::follow(std::span<const Eye> eyes, double step_seconds) {
     const bool keeps_time = rests->moving != nullptr && scene.moving != nullptr;
     if (keeps_time) { rests->clock.goWith(scene.clock); }
     rests->follow(seenFromResting(eyes), keeps_time ? 0.0 : step_seconds);
-}
-
-void ShownScene::passOver() {
-    for (StereoFrame* const frame : {resting().frame.get(), resting().insets.get()}) {
-        if (frame != nullptr) { frame->passOver(); }
-    }
 }
 
 }  // namespace binosplat

@@ -92,25 +92,24 @@ bool FramesAhead::isLike(const FramesAhead& other) const {
            withoutNumbers(stereo) == withoutNumbers(other.stereo);
 }
 
-std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene,
-                                              const CameraOptions& camera, const FramesAhead& ahead,
-                                              const std::function<void()>& between) {
-    auto small = std::make_unique<StereoFrame>(context, scene,
-                                               FrameOptions{.first_capacity = {1, 1}, .threads_per_cell = 0});
+void makeKernelsAhead(const Context& context, PassKernels& kernels, const GpuScene& scene,
+                      const CameraOptions& camera, const FramesAhead& ahead,
+                      const std::function<void()>& between) {
     try {
+        // Never drawn.
+        StereoFrame small(context, scene, kernels, {.first_capacity = {1, 1}, .threads_per_cell = 0});
         for (const std::uint32_t width : widthsOf(ahead.size_px.x)) {
-            makeKernelsAt(width, *small, camera, ahead, between);
+            makeKernelsAt(width, small, camera, ahead, between);
         }
     } catch (const Error&) {}  // reported when a frame needs it
-    return small;
 }
 
-KernelMaker::KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera,
-                         FramesAhead ahead)
-    : ahead_(std::move(ahead)), thread_([this, &context, &scene, where = std::move(camera)] {
+KernelMaker::KernelMaker(const Context& context, PassKernels& kernels, const GpuScene& scene,
+                         CameraOptions camera, FramesAhead ahead)
+    : ahead_(std::move(ahead)), thread_([this, &context, &kernels, &scene, where = std::move(camera)] {
           struct Cancelled {};
           try {
-              made_ = makeKernelsAhead(context, scene, where, ahead_, [this] {
+              makeKernelsAhead(context, kernels, scene, where, ahead_, [this] {
                   if (cancelled_) { throw Cancelled(); }
               });
           } catch (const Cancelled&) { gave_up_ = true; } catch (const std::exception&) {

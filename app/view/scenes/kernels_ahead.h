@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <functional>
-#include <memory>
 #include <set>
 #include <thread>
 #include <utility>
@@ -25,19 +24,19 @@ struct FramesAhead {
     [[nodiscard]] bool isLike(const FramesAhead& other) const;
 };
 
-// A frame of `scene` that is never drawn and has the kernels for everything that may happen without a click,
-// for StereoFrame::takeKernels: those of the chosen method, with and without hidden tiles and foveation, with
-// parallel and canted eyes. Takes as long as the driver needs; `between` is called now and then and may
-// throw.
-std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene,
-                                              const CameraOptions& camera, const FramesAhead& ahead,
-                                              const std::function<void()>& between);
+// Makes `kernels` of whatever frames of `scene` may come without a click: those of the chosen method, with
+// and without hidden tiles and foveation, with parallel and canted eyes. Takes as long as the driver needs;
+// `between` is called now and then and may throw.
+void makeKernelsAhead(const Context& context, PassKernels& kernels, const GpuScene& scene,
+                      const CameraOptions& camera, const FramesAhead& ahead,
+                      const std::function<void()>& between);
 
 // The same on a thread of its own, for a scene that is shown.
 class KernelMaker {
 public:
-    // `scene` must outlive this.
-    KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead);
+    // `kernels` and `scene` outlive this.
+    KernelMaker(const Context& context, PassKernels& kernels, const GpuScene& scene, CameraOptions camera,
+                FramesAhead ahead);
     KernelMaker(const KernelMaker&) = delete;
     KernelMaker& operator=(const KernelMaker&) = delete;
     // Cancels what it can, and waits for the rest.
@@ -46,16 +45,14 @@ public:
     void cancel() { cancelled_ = true; }
     [[nodiscard]] const FramesAhead& ahead() const { return ahead_; }
     [[nodiscard]] bool isDone() const { return done_; }
-    // Once done: true if it was cancelled in time.
+    // Once done: true if it was cancelled in time. If it failed, a frame that needs the kernels will report
+    // that.
     [[nodiscard]] bool hasGivenUp() const { return gave_up_; }
-    // Once done: null if it gave up or failed; a frame that needs the kernels will report that.
-    [[nodiscard]] StereoFrame* made() { return made_.get(); }
 
 private:
     FramesAhead ahead_;
     std::atomic<bool> done_ = false, cancelled_ = false;
     bool gave_up_ = false;
-    std::unique_ptr<StereoFrame> made_;
     std::thread thread_;
 };
 

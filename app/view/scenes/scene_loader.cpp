@@ -67,11 +67,13 @@ void LoadedScene::count(FrameCounters& counters) const {
     if (live) { counters.streaming = streamingOf(*live); }
 }
 
-SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options,
+SceneLoader::SceneLoader(const Context& context, PassKernels& kernels, std::string scene, RunOptions options,
                          std::optional<FramesAhead> ahead, bool settled)
     : scene_(std::move(scene)),
       ahead_(std::move(ahead)),
-      thread_([this, &context, run = std::move(options), settled] { load(context, run, settled); }) {}
+      thread_([this, &context, &kernels, run = std::move(options), settled] {
+          load(context, kernels, run, settled);
+      }) {}
 
 SceneLoader::~SceneLoader() {
     cancelled_ = true;
@@ -89,7 +91,8 @@ void SceneLoader::expect(const FramesAhead& ahead) {
     ahead_ = ahead;
 }
 
-void SceneLoader::load(const Context& context, const RunOptions& options, bool settled) {
+void SceneLoader::load(const Context& context, PassKernels& kernels, const RunOptions& options,
+                       bool settled) {
     try {
         LoadNotes notes;
         // Readers may report from threads of their own, where this must not throw.
@@ -142,7 +145,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
         loaded_->viewpoints = findViewpoints(scene, scene_, options.camera.cameras_file);
         loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
-        makeKernels(context, options);
+        makeKernels(context, kernels, options);
     } catch (const Cancelled&) {
         loaded_.reset();  // nobody waits
     } catch (...) { error_ = std::current_exception(); }
@@ -151,19 +154,16 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
     done_ = true;
 }
 
-void SceneLoader::makeKernels(const Context& context, const RunOptions& options) {
+void SceneLoader::makeKernels(const Context& context, PassKernels& kernels, const RunOptions& options) {
     while (!finish()) {
         {
             const std::lock_guard lock(mutex_);
             made_for_ = ahead_;
         }
         if (made_for_->known.contains(kindOf(*loaded_))) { continue; }
-        std::unique_ptr<StereoFrame> made =
-            makeKernelsAhead(context, loaded_->gpu_scene, options.camera, *made_for_, [this] {
-                if (cancelled_) { throw Cancelled(); }
-            });
-        if (loaded_->kernels) { made->takeKernels(*loaded_->kernels); }
-        loaded_->kernels = std::move(made);
+        makeKernelsAhead(context, kernels, loaded_->gpu_scene, options.camera, *made_for_, [this] {
+            if (cancelled_) { throw Cancelled(); }
+        });
     }
 }
 

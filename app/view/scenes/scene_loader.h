@@ -45,13 +45,11 @@ struct LoadedScene {
     MovingScene* moving = nullptr;    // the same, if it moves
     const GpuScene& gpu_scene;        // of either
     SceneClock clock;                 // of one that moves
-    // For frames that show it, see makeKernelsAhead; null: none were made.
-    std::unique_ptr<StereoFrame> kernels;
-    glm::dvec3 origin{0.0};         // see Scene
-    View start_view{};              // see startView
-    Similarity start;               // see startPlacement
-    glm::dvec3 up{0.0, -1.0, 0.0};  // see upOfScene
-    std::optional<double> floor;    // see floorHeight, along `up`
+    glm::dvec3 origin{0.0};           // see Scene
+    View start_view{};                // see startView
+    Similarity start;                 // see startPlacement
+    glm::dvec3 up{0.0, -1.0, 0.0};    // see upOfScene
+    std::optional<double> floor;      // see floorHeight, along `up`
     std::vector<Viewpoint> viewpoints;
     LoadNotes notes;
     SceneFacts facts;
@@ -70,10 +68,10 @@ std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene);
 // Loads on a thread of its own.
 class SceneLoader {
 public:
-    // With `ahead` it also makes the kernels for the scene's frames, unless scenes of its kind were shown
-    // before. A streamed scene is done when the coarsest level of all its leaves is loaded or, if `settled`,
-    // everything that the start view needs.
-    SceneLoader(const Context& context, std::string scene, RunOptions options,
+    // With `ahead` it also makes those of `kernels` that the scene's frames need, unless scenes of its kind
+    // were shown before. A streamed scene is done when the coarsest level of all its leaves is loaded or, if
+    // `settled`, everything that the start view needs. `context` and `kernels` outlive this.
+    SceneLoader(const Context& context, PassKernels& kernels, std::string scene, RunOptions options,
                 std::optional<FramesAhead> ahead = {}, bool settled = false);
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
@@ -90,14 +88,16 @@ public:
     // Share done, 0 to 1.
     [[nodiscard]] double progress() const { return progress_; }
     [[nodiscard]] bool isDone() const { return done_; }
+    // Once done: the scene, until it is taken; null if it could not be loaded, or nobody wants it any more.
+    [[nodiscard]] const LoadedScene* loaded() const { return loaded_.get(); }
     // Waits for the scene and hands it over, once. Throws what loading threw.
     [[nodiscard]] std::unique_ptr<LoadedScene> take();
     // After that, with kernels: the frames that they are for.
     [[nodiscard]] const FramesAhead& madeFor() const { return *made_for_; }
 
 private:
-    void load(const Context& context, const RunOptions& options, bool settled);
-    void makeKernels(const Context& context, const RunOptions& options);
+    void load(const Context& context, PassKernels& kernels, const RunOptions& options, bool settled);
+    void makeKernels(const Context& context, PassKernels& kernels, const RunOptions& options);
     // Ends, unless other kernels are needed than those that were made.
     bool finish();
 

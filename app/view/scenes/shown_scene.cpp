@@ -12,7 +12,7 @@ namespace binosplat {
 
 ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log,
                        std::optional<FramesAhead> ahead)
-    : context_(context), options_(options), log_(log), ahead_(std::move(ahead)) {
+    : context_(context), options_(options), log_(log), kernels_(context), ahead_(std::move(ahead)) {
     begin(options.scene, options.compare);
 }
 
@@ -21,17 +21,18 @@ std::string ShownScene::names() const {
 }
 
 std::optional<double> ShownScene::loading() const {
-    if (loader_) { return loader_->progress(); }
-    if (other_loader_) { return other_loader_->progress(); }
+    for (const Coming* const coming : {&next_, &other_next_}) {
+        if (coming->loader) { return coming->loader->progress(); }
+    }
     const LoadedScene* const scene = drawn();
     if (scene == nullptr || !scene->live || scene->live->share() >= 1.0) { return std::nullopt; }
     return scene->live->share();
 }
 
 bool ShownScene::isLoading() const {
-    return loader_ || other_loader_ || maker_ ||
+    return next_.loader || other_next_.loader || maker_ ||
            std::ranges::any_of(given_up_,
-                               [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
+                               [](const Coming& coming) { return !coming.isLoaded() || coming.isMaking(); });
 }
 
 void ShownScene::begin(const std::string& scene, const std::string& compared) {
@@ -40,17 +41,30 @@ void ShownScene::begin(const std::string& scene, const std::string& compared) {
     compared_next_ = compared;
 }
 
-void ShownScene::giveUp(std::unique_ptr<SceneLoader>& loader) {
-    // Loaders that are giving up are not waited for.
-    std::erase_if(given_up_, [](const std::unique_ptr<SceneLoader>& earlier) { return earlier->isDone(); });
-    if (!loader) { return; }
-    loader->cancel();
-    given_up_.push_back(std::move(loader));
+void ShownScene::giveUp(Coming& coming) {
+    if (coming.loader) { given_up_.push_back(std::exchange(coming, {})); }
+    forgetGivenUp();
+}
+
+void ShownScene::forgetGivenUp() {
+    // Those that are giving up are not waited for.
+    for (Coming& coming : given_up_) {
+        if (coming.isMaking()) { continue; }
+        coming.frames = {};
+        coming.loader->cancel();
+    }
+    std::erase_if(given_up_,
+                  [](const Coming& coming) { return coming.isLoaded() && !coming.frames.valid(); });
+}
+
+std::unique_ptr<SceneLoader> ShownScene::makeLoader(const std::string& scene, RunOptions options) {
+    return std::make_unique<SceneLoader>(context_, kernels_, scene, std::move(options), ahead_,
+                                         options_.load_first);
 }
 
 void ShownScene::load(const std::string& scene) {
-    giveUp(loader_);
-    giveUp(other_loader_);
+    giveUp(next_);
+    giveUp(other_next_);
     ++asked_count_;
     asked_ = scene;
     compared_next_.clear();
@@ -59,7 +73,7 @@ void ShownScene::load(const std::string& scene) {
         run.camera.cameras_file.clear();
         run.camera.eye = run.camera.look = run.camera.up = std::nullopt;
     }
-    loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
+    next_.loader = makeLoader(scene, std::move(run));
 }
 
 void ShownScene::beginBeside(int step, FileWorker& files) {
@@ -82,21 +96,21 @@ void ShownScene::lookBeside(FileWorker& files) {
 }
 
 void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint) {
+    forgetGivenUp();
     if (!ahead_) { return; }
     FramesAhead wanted{stereo, size_px, ahead_->with_depth, tint, {}};
     if (!ahead_->isLike(wanted)) {
         ahead_ = std::move(wanted);
-        for (SceneLoader* const loader : {loader_.get(), other_loader_.get()}) {
-            if (loader != nullptr) { loader->expect(*ahead_); }
+        for (const Coming* const coming : {&next_, &other_next_}) {
+            if (coming->loader) { coming->loader->expect(*ahead_); }
         }
     }
     if (!shown_.scene || options_.load_first) { return; }
     if (maker_ && maker_->isDone()) {
-        if (StereoFrame* const made = maker_->made()) { takeKernels(*made); }
         if (!maker_->hasGivenUp()) { haveReady(*made_for_, maker_->ahead()); }
         maker_.reset();
     }
-    const bool loads = loader_ || other_loader_;
+    const bool loads = next_.loader || other_next_.loader;
     if (maker_) {
         if (!maker_->ahead().isLike(*ahead_) || loads) { maker_->cancel(); }
         return;
@@ -104,23 +118,14 @@ void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool ti
     for (Held* const held : {&drawing(), &resting()}) {
         if (loads || maker_ || !held->scene || held->ready->isLike(*ahead_)) { continue; }
         made_for_ = held;
-        maker_ =
-            std::make_unique<KernelMaker>(context_, held->scene->gpu_scene, options_.run.camera, *ahead_);
+        maker_ = std::make_unique<KernelMaker>(context_, kernels_, held->scene->gpu_scene,
+                                               options_.run.camera, *ahead_);
     }
 }
 
 void ShownScene::haveReady(Held& held, const FramesAhead& ahead) {
     held.ready = ahead;
     if (ahead_->isLike(ahead)) { ahead_->known.insert(kindOf(*held.scene)); }
-}
-
-void ShownScene::takeKernels(StereoFrame& from) {
-    // All frames share the kernels, and none may be on the device with a kernel that is removed.
-    for (const Held* const held : {&shown_, &other_}) {
-        if (held->frame) { (void)held->frame->finish(); }
-        if (held->insets) { (void)held->insets->finish(); }
-    }
-    shown_.frame->takeKernels(from);
 }
 
 ViewSettings ShownScene::drawable(ViewSettings settings) const {
@@ -139,16 +144,21 @@ ViewSettings ShownScene::drawable(ViewSettings settings) const {
 }
 
 std::string ShownScene::take(ViewState& state) {
-    const std::unique_ptr<SceneLoader> loader = std::move(loader_);
+    Coming coming = std::exchange(next_, {});
     try {
-        std::unique_ptr<LoadedScene> taken = loader->take();
+        std::unique_ptr<LoadedScene> taken = coming.loader->take();
         maker_.reset();
+        SceneFrames frames = takeFrames(coming);
         dropOther();
         if (shown_.scene) { left_[shown_.scene->place] = state.sceneFromRoom(); }
-        showInFrames(*taken);
+        if (frames.frame) {
+            letGo(shown_);
+            shown_.frames = std::move(frames);
+        } else {
+            showInFrames(*taken);
+        }
         shown_.scene = std::move(taken);
-        if (const auto kernels = std::exchange(shown_.scene->kernels, nullptr)) { takeKernels(*kernels); }
-        if (ahead_) { haveReady(shown_, loader->madeFor()); }
+        if (ahead_) { haveReady(shown_, coming.loader->madeFor()); }
     } catch (const vk::DeviceLostError&) { throw; } catch (const DeviceError& error) {
         const bool lacks_memory = error.kind() == DeviceError::Kind::kMemory;
         return lacks_memory && shown_.scene ? makeWay(state) : goOnWithout(error.what());
@@ -164,29 +174,33 @@ std::string ShownScene::take(ViewState& state) {
 }
 
 void ShownScene::showInFrames(const LoadedScene& scene) {
-    // Each waits for its own frames in flight; after that, nothing reads the previous scene.
-    if (shown_.frame) {
-        shown_.frame->show(scene.gpu_scene);
+    // Each waits for its own frames in flight; after that nothing reads the previous scene.
+    freeGone();
+    SceneFrames& frames = shown_.frames;
+    if (frames.frame) {
+        frames.frame->show(scene.gpu_scene);
     } else {
-        shown_.frame = std::make_unique<StereoFrame>(context_, scene.gpu_scene);
+        frames.frame = std::make_unique<StereoFrame>(context_, scene.gpu_scene, kernels_);
     }
     try {
-        if (shown_.insets) { shown_.insets->show(scene.gpu_scene); }
-    } catch (const Error&) { shown_.insets.reset(); }  // reported when a headset takes insets
+        if (frames.insets) { frames.insets->show(scene.gpu_scene); }
+    } catch (const Error&) { frames.insets.reset(); }  // reported when a headset takes insets
 }
 
 StereoFrame& ShownScene::insets() {
-    Held& held = drawing();
-    if (!held.insets) { held.insets = StereoFrame::beside(*held.frame); }
-    return *held.insets;
+    SceneFrames& frames = drawing().frames;
+    if (!frames.insets) { frames.insets = StereoFrame::beside(*frames.frame); }
+    return *frames.insets;
 }
 
 void ShownScene::rebuildKernels() {
     // They share the kernels.
-    for (StereoFrame* const frame : {shown_.insets.get(), other_.insets.get(), other_.frame.get()}) {
+    freeGone();
+    for (StereoFrame* const frame :
+         {shown_.frames.insets.get(), other_.frames.insets.get(), other_.frames.frame.get()}) {
         if (frame != nullptr) { (void)frame->finish(); }
     }
-    shown_.frame->rebuildKernels();
+    shown_.frames.frame->rebuildKernels();
 }
 
 std::string ShownScene::goOnWithout(const std::string& why) {
@@ -205,10 +219,10 @@ std::string ShownScene::makeWay(const ViewState& state) {
     const std::string compared = compared_next_;
     maker_.reset();
     dropOther();
-    shown_.insets.reset();
-    // Its kernels stay.
+    freeGone();
+    shown_.frames.insets.reset();
     if (!nothing_) { nothing_ = std::make_unique<GpuScene>(context_, Scene{}); }
-    shown_.frame->show(*nothing_);
+    shown_.frames.frame->show(*nothing_);
     shown_.scene.reset();
     load(std::string(asked_));
     compared_next_ = compared;
@@ -217,22 +231,28 @@ std::string ShownScene::makeWay(const ViewState& state) {
         asked_);
 }
 
-std::string ShownScene::place(ViewState& state) {
-    state.countFrom(shown_.scene->origin);
-    if (const auto left = left_.find(shown_.scene->place); left != left_.end()) {
-        state.place(left->second);
-        return {};
-    }
+bool ShownScene::isPlaceGiven(const LoadedScene& scene) const {
     const CameraOptions& camera = options_.run.camera;
-    const std::optional<Similarity> asked = state.takeAsked();
-    state.place(asked.value_or(shown_.scene->start));
-    const bool is_given = camera.eye || camera.look || camera.up || !camera.cameras_file.empty();
-    if (asked || (is_given && shown_.scene->name == options_.scene)) { return {}; }
-    if (shown_.scene->remembered) {
-        state.place(*shown_.scene->remembered);
-        log_.say("the wearer stands where this scene was saved");
+    return scene.name == options_.scene &&
+           (camera.eye || camera.look || camera.up || !camera.cameras_file.empty());
+}
+
+Similarity ShownScene::placementOf(const LoadedScene& scene, const ViewState& state) const {
+    if (const auto left = left_.find(scene.place); left != left_.end()) { return left->second; }
+    if (std::optional<Similarity> asked = state.asked()) {
+        asked->position -= scene.origin;
+        return *asked;
     }
-    return shown_.scene->remembering_trouble;
+    return scene.remembered && !isPlaceGiven(scene) ? *scene.remembered : scene.start;
+}
+
+std::string ShownScene::place(ViewState& state) {
+    const LoadedScene& scene = *shown_.scene;
+    state.countFrom(scene.origin);
+    state.place(placementOf(scene, state));
+    if (left_.contains(scene.place) || state.takeAsked() || isPlaceGiven(scene)) { return {}; }
+    if (scene.remembered) { log_.say("the wearer stands where this scene was saved"); }
+    return scene.remembering_trouble;
 }
 
 }  // namespace binosplat

@@ -4,10 +4,13 @@
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/files/picture_shot.h"
+#include "app/view/scenes/frame_maker.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
 #include "engine/error.h"
 
+#include <chrono>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,10 +32,10 @@ public:
     [[nodiscard]] LoadedScene* drawn() const { return drawing().scene.get(); }
     // The frame of the scene that is drawn, once there is one; and another one, made at the first call, for
     // the insets of a headset that has them. Throws Error if the device lacks the memory.
-    [[nodiscard]] StereoFrame& frame() const { return *drawing().frame; }
+    [[nodiscard]] StereoFrame& frame() const { return *drawing().frames.frame; }
     [[nodiscard]] StereoFrame& insets();
-    void dropInsets() { shown_.insets.reset(), other_.insets.reset(); }
-    // Of the drawn scene; the picture must be taken before another scene is drawn.
+    void dropInsets() { shown_.frames.insets.reset(), other_.frames.insets.reset(); }
+    // Of the drawn scene; to be taken before another one is.
     [[nodiscard]] PictureShot shotOf(std::vector<Eye> eyes, const FrameSettings& settings) const {
         return {context_, drawing().scene->gpu_scene, std::move(eyes), settings};
     }
@@ -48,15 +51,24 @@ public:
     // True if a thread still loads or compiles anything, wanted or given up.
     [[nodiscard]] bool isLoading() const;
     // True if it can be taken, and no thread makes kernels for the current one any more.
-    [[nodiscard]] bool isNextReady() const {
-        return loader_ && loader_->isDone() && (!maker_ || maker_->isDone());
-    }
+    [[nodiscard]] bool isNextReady() const { return next_.isLoaded() && (!maker_ || maker_->isDone()); }
     // The same for the other scene of a comparison.
     [[nodiscard]] bool isOtherReady() const {
-        return shown_.scene && other_loader_ && other_loader_->isDone() && (!maker_ || maker_->isDone());
+        return shown_.scene && other_next_.isLoaded() && (!maker_ || maker_->isDone());
     }
     // Nothing of what was asked for at the start is missing.
-    [[nodiscard]] bool isComplete() const { return shown_.scene && compared_next_.empty() && !other_loader_; }
+    [[nodiscard]] bool isComplete() const {
+        return shown_.scene && compared_next_.empty() && !other_next_.loader;
+    }
+
+    // Such a scene for which no frames have been made: where the wearer would stand in it. Empty if there is
+    // none.
+    [[nodiscard]] std::optional<Similarity> placeWithoutFrames(const ViewState& state) const;
+    // Makes frames like these of that scene on a thread, so that taking it, and showing it, needs no wait.
+    void makeFrames(FramesWanted wanted);
+    // Ready to be taken without a wait.
+    [[nodiscard]] bool isNextMet() const { return isNextReady() && next_.isMet(); }
+    [[nodiscard]] bool isOtherMet() const { return isOtherReady() && other_next_.isMet(); }
     // True while kernels for drawable() are being made.
     [[nodiscard]] bool isMakingKernels() const { return maker_ != nullptr; }
 
@@ -82,7 +94,7 @@ public:
     // A scene of the same place that the shown one is compared with; null: none. It goes when another scene
     // is shown.
     [[nodiscard]] LoadedScene* other() const { return other_.scene.get(); }
-    [[nodiscard]] StereoFrame& otherFrame() const { return *other_.frame; }
+    [[nodiscard]] StereoFrame& otherFrame() const { return *other_.frames.frame; }
     // Of the shown scene's eyes and placements, in the coordinates of the other one: both count from origins
     // of their own.
     [[nodiscard]] glm::dvec3 otherFromShown() const { return shown_.scene->origin - other_.scene->origin; }
@@ -110,24 +122,52 @@ public:
     // waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
     // In each frame: the scene that is not drawn waits for its own frame before the last, as the drawn one
-    // does.
-    void passOver();
+    // does; and so do those that are shown no more. If `nothing` is drawn, all do.
+    void passOver(bool nothing = false);
+    // Instead, for those that are shown no more: waits until they are freed.
+    void freeGone();
 
 private:
     // A scene, and the frames that show it.
     struct Held {
         std::unique_ptr<LoadedScene> scene;
-        std::unique_ptr<StereoFrame> frame, insets;
+        SceneFrames frames;                // before the scene goes, they wait for the device
         std::optional<FramesAhead> ready;  // the frames that there are kernels for
-        // What it has drawn frames for: their size, and of how many tiles it is known whether they show.
-        glm::uvec3 met{0};
+    };
+    // A scene that loads, and then its frames.
+    struct Coming {
+        std::unique_ptr<SceneLoader> loader;  // null: there is none
+        std::future<SceneFrames> frames;      // that are made; its thread ends before the loader's scene goes
+
+        [[nodiscard]] bool isLoaded() const { return loader && loader->isDone(); }
+        [[nodiscard]] bool hasMade() const {
+            return frames.valid() && frames.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        }
+        [[nodiscard]] bool isMaking() const { return frames.valid() && !hasMade(); }
+        // It could not be loaded, or there are frames of it.
+        [[nodiscard]] bool isMet() const { return loader->loaded() == nullptr || hasMade(); }
+    };
+    // One that is shown no more, which frames on the device may still read.
+    struct Leaving {
+        Held held;
+        int frames_left = 2;
     };
     [[nodiscard]] const Held& drawing() const { return draws_other_ ? other_ : shown_; }
     [[nodiscard]] Held& drawing() { return draws_other_ ? other_ : shown_; }
     [[nodiscard]] Held& resting() { return draws_other_ ? shown_ : other_; }
     void load(const std::string& scene);
-    // Nobody waits for that loader.
-    void giveUp(std::unique_ptr<SceneLoader>& loader);
+    [[nodiscard]] std::unique_ptr<SceneLoader> makeLoader(const std::string& scene, RunOptions options);
+    // The one of these for which frames are made next; null: none.
+    [[nodiscard]] const Coming* lacksFrames() const;
+    // Empty if none were made, or if the device lacks the memory for them and those that are shown.
+    [[nodiscard]] static SceneFrames takeFrames(Coming& coming);
+    [[nodiscard]] bool isPlaceGiven(const LoadedScene& scene) const;
+    [[nodiscard]] Similarity placementOf(const LoadedScene& scene, const ViewState& state) const;
+    // Nobody waits for that one.
+    void giveUp(Coming& coming);
+    void forgetGivenUp();
+    // It is freed on a thread, once frames are over that may read it.
+    void letGo(Held& held);
     void beginOther(const std::string& scene);
     void dropOther();
     [[nodiscard]] std::string place(ViewState& state);
@@ -136,8 +176,7 @@ private:
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);
     void haveReady(Held& held, const FramesAhead& ahead);
-    void takeKernels(StereoFrame& from);
-    // Eyes of the drawn scene, in the coordinates of the other one.
+    // Eyes of the drawn scene, as the other one counts.
     [[nodiscard]] std::vector<Eye> seenFromResting(std::span<const Eye> eyes) const;
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.
     [[nodiscard]] std::string goOnWithout(const std::string& why);
@@ -148,6 +187,7 @@ private:
     const Context& context_;
     const ViewOptions& options_;
     const FrameLog& log_;
+    PassKernels kernels_;  // of all frames
     std::optional<FramesAhead> ahead_;
     std::string asked_;          // the scene asked for last, even if it could not be loaded
     std::string compared_next_;  // with it, once it is shown; empty: none
@@ -158,11 +198,13 @@ private:
     std::unique_ptr<GpuScene> nothing_;  // that frames show meanwhile
     std::string other_name_;
     bool compares_next_ = false, draws_other_ = false;
-    Held shown_, other_;                  // the other one's frames use the kernels of the shown one's
-    Held* made_for_ = nullptr;            // the one of these that kernels are made for
+    Held shown_, other_;
+    std::vector<Leaving> leaving_;
+    std::vector<std::future<void>> freeing_;
+    Held* made_for_ = nullptr;            // the one of the first two that kernels are made for
     std::unique_ptr<KernelMaker> maker_;  // for that one
-    std::vector<std::unique_ptr<SceneLoader>> given_up_;
-    std::unique_ptr<SceneLoader> loader_, other_loader_;  // last: their threads end first
+    std::vector<Coming> given_up_;
+    Coming next_, other_next_;  // last: their threads end first
 };
 
 }  // namespace binosplat

@@ -31,7 +31,9 @@ public:
     // Of the scene that is shown, see Scene: placements among settings are in its file's coordinates.
     void countFrom(const glm::dvec3& origin) { origin_ = origin; }
     void place(const Similarity& scene_from_room) { scene_from_room_ = scene_from_room; }
-    // A placement that was requested before there was a scene; once.
+    // A placement that was requested before there was a scene, in its file's coordinates.
+    [[nodiscard]] const std::optional<Similarity>& asked() const { return asked_; }
+    // The same in the scene; once.
     [[nodiscard]] std::optional<Similarity> takeAsked() { return inScene(std::exchange(asked_, {})); }
     // Also sets the placement, if there is one among them.
     void set(ViewSettings settings) {

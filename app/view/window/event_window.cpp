@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/gpu/context.h"
+#include "engine/platform.h"
 
 #define GLFW_INCLUDE_NONE
 #define GLFW_INCLUDE_VULKAN
@@ -17,6 +18,19 @@ namespace {
 
 // The mouse may leave without an event.
 constexpr double kLookSeconds = 0.02;
+
+// In its shape, as large as the display allows.
+glm::ivec2 fittedToDisplay(glm::ivec2 size) {
+    GLFWmonitor* const display = glfwGetPrimaryMonitor();
+    if (display == nullptr) { return size; }
+    glm::ivec2 place, area;
+    glm::vec2 scale(1.0f);  // by which the window will be larger than asked for
+    glfwGetMonitorWorkarea(display, &place.x, &place.y, &area.x, &area.y);
+    glfwGetMonitorContentScale(display, &scale.x, &scale.y);
+    if (area.x <= 0 || area.y <= 0) { return size; }
+    const glm::dvec2 shares = glm::dvec2(area) / (glm::dvec2(scale) * glm::dvec2(size));
+    return glm::max(glm::ivec2(std::min({1.0, shares.x, shares.y}) * glm::dvec2(size)), 1);
+}
 
 }  // namespace
 
@@ -34,10 +48,20 @@ std::vector<const char*> WindowSystem::instanceExtensions() {
     return names == nullptr ? std::vector<const char*>{} : std::vector<const char*>(names, names + count);
 }
 
+std::string WindowSystem::whyNone() {
+    const auto valueOf = [](const char* name) {
+        const std::string value = environment(name);
+        return fmt::format("{} is {}", name, value.empty() ? "not set" : value);
+    };
+    return fmt::format("no window: no display can be opened that Vulkan can show on ({}, {})",
+                       valueOf("DISPLAY"), valueOf("WAYLAND_DISPLAY"));
+}
+
 EventWindow::EventWindow(glm::ivec2 size) : window_(nullptr, glfwDestroyWindow) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_.reset(glfwCreateWindow(size.x, size.y, "binosplat", nullptr, nullptr));
+    const glm::ivec2 fitted = fittedToDisplay(size);
+    window_.reset(glfwCreateWindow(fitted.x, fitted.y, "binosplat", nullptr, nullptr));
     check(window_ != nullptr, "the window does not open");
     glfwSetWindowAspectRatio(window_.get(), size.x, size.y);
     glfwSetWindowUserPointer(window_.get(), this);

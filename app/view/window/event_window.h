@@ -29,6 +29,8 @@ public:
     ~WindowSystem();
 
     [[nodiscard]] static std::vector<const char*> instanceExtensions();
+    // Why find() found none, in a line for the user.
+    [[nodiscard]] static std::string whyNone();
 
 private:
     WindowSystem() = default;

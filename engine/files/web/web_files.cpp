@@ -134,7 +134,7 @@ Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_spl
     };
     WebFiles files(source, settings, fetching);
     Scene scene = loadScene(files.open(""), notes, progress ? Progress(reading) : Progress(), level);
-    if (isPlainHttp(source)) {
+    if (isOpenOnTheWay(source)) {
         notes.lines.push_back(fmt::format(
             "{}: came by http, so others on the way could read and change it; https is safer", source));
     }

@@ -1,6 +1,13 @@
 // Facts about operations in frames that may wait, as counted by two layers (tests/faults/waits.h): the frames
 // of a running viewer do none of them.
 #include "tests/app/view/view_acts.h"
+#include "tests/engine/stream/moving_frames.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/stream/split_scene.h"
+#endif
+#ifdef BINOSPLAT_WEB_TESTS
+#include "tests/engine/files/web/web_server.h"
+#endif
 
 SUITE(view_quiet) {
 
@@ -47,6 +54,15 @@ std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
 }
 
 std::string listed(const std::set<std::string>& kinds) { return fmt::format("{}", fmt::join(kinds, " ")); }
+
+// No frame but the first ones waited or made anything.
+void checkQuiet(const Workplace& work, std::size_t first_frames = 45) {
+    const std::vector<std::set<std::string>> waits = waitsOf(work);
+    REQUIRE(waits.size() > first_frames + 45);
+    for (std::size_t frame = first_frames; frame < waits.size(); ++frame) {
+        CHECK_MESSAGE(waits[frame].empty(), frame, ": ", listed(waits[frame]));
+    }
+}
 
 TEST_CASE(
     "no frame of a running viewer waits or makes anything after the first second, until its session is "
@@ -132,49 +148,150 @@ TEST_CASE(
         checkOrder(run, {"viewpoint 1 of 2: beside", "viewpoint 2 of 2: away", "viewpoint 1 of 2: beside"});
         CHECK(run.lines("picture " + work.path.string() + "/pictures/wall-20").size() == 3);
         CHECK_FALSE(run.says("frames shown incomplete"));
-        const std::vector<std::set<std::string>> waits = waitsOf(work);
-        REQUIRE(waits.size() > 4 * 45 / 2);
-        for (std::size_t frame = 45; frame < waits.size(); ++frame) {
-            CHECK_MESSAGE(waits[frame].empty(), frame, ": ", listed(waits[frame]));
-        }
+        checkQuiet(work);
     }
 }
 
-TEST_CASE("a picture of a scene that goes is kept without a wait") {
+TEST_CASE("a scene is exchanged for another one, and a picture of it kept, without a wait") {
+    for (const std::string mode : {"temporal", "predicted", "shared"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        std::filesystem::create_directory(work.path / "scenes");
+        for (const char* const scene : {"slanted-wall", "one-splat"}) {
+            REQUIRE(work.run(fmt::format("scene {0} --out scenes/{0}.ply", scene)).exit_code == 0);
+        }
+        Acts acts("rate 45\nsize 64 64\nframes none\nvisibility-mask on\n");
+        // Frames may be late, and the scene must have been seen in thirty of them.
+        acts.wait(4.0)
+            .point(placeOfScene("Next scene", (work.path / "scenes").string()))
+            .wait(0.25)
+            .press("right trigger", 0.3)
+            .wait(2.0);
+        const ViewRun run = runView(work, "goes", acts.script(),
+                                    "scenes/slanted-wall.ply --load-first --hide-hands --mode " + mode +
+                                        withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
+                                    kWatched + " SIMULATED_OPENXR_CLOCK=real");
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        checkOrder(run, {"shows scenes/slanted-wall.ply", "shows scenes/one-splat.ply"});
+        CHECK_FALSE(run.says("frames shown incomplete"));
+        checkQuiet(work, 20);
+        std::size_t pictures = 0;
+        for (const auto& file :
+             std::filesystem::recursive_directory_iterator(work.base / "config" / "binosplat")) {
+            pictures += file.path().extension() == ".png" ? 1 : 0;
+        }
+        CHECK(pictures > 0);
+    }
+}
+
+TEST_CASE("a scene to compare with comes, and goes, without a wait") {
     const Workplace work;
     std::filesystem::create_directory(work.path / "scenes");
     for (const char* const scene : {"slanted-wall", "one-splat"}) {
         REQUIRE(work.run(fmt::format("scene {0} --out scenes/{0}.ply", scene)).exit_code == 0);
     }
+    const std::string folder = (work.path / "scenes").string();
     Acts acts("rate 45\nsize 64 64\nframes none\n");
-    // Frames may be late, and the scene must have been seen in thirty of them.
-    acts.wait(4.0)
-        .point(placeOfScene("Next scene", (work.path / "scenes").string()))
-        .wait(0.25)
-        .press("right trigger", 0.3)
-        .wait(2.0);
-    const ViewRun run = runView(work, "goes", acts.script(),
-                                "scenes/slanted-wall.ply --load-first --hide-hands --mode shared" +
+    acts.wait(2.0);
+    for (const char* const widget : {"Compare", "one-splat.ply"}) {
+        acts.point(placeOfScene(widget, folder)).wait(0.25).press("right trigger", 0.3);
+    }
+    acts.wait(2.0).hold("right a", 0.5).wait(1.0);
+    acts.point(placeOfScene("Compare", folder)).wait(0.25).press("right trigger", 0.3).wait(0.5);
+    const ViewRun run = runView(work, "with", acts.script(),
+                                "scenes/slanted-wall.ply --load-first --hide-hands --mode temporal" +
                                     withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
                                 kWatched + " SIMULATED_OPENXR_CLOCK=real");
     INFO(run.outcome.output << run.outcome.errors);
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-    checkOrder(run, {"shows scenes/slanted-wall.ply", "shows scenes/one-splat.ply"});
-    const std::vector<std::set<std::string>> waits = waitsOf(work);
-    // The first frame of the next one, for which lists and pictures are made.
-    std::vector<std::size_t> busy;
-    for (std::size_t frame = 20; frame < waits.size(); ++frame) {
-        if (!waits[frame].empty()) { busy.push_back(frame); }
-    }
-    REQUIRE(busy.size() == 1);
-    CHECK(listed(waits[busy[0]]) == "buffer fence-of-last-frame fence-of-this-frame memory");
-    std::size_t pictures = 0;
-    for (const auto& file :
-         std::filesystem::recursive_directory_iterator(work.base / "config" / "binosplat")) {
-        pictures += file.path().extension() == ".png" ? 1 : 0;
-    }
-    CHECK(pictures > 0);
+    checkOrder(run, {"to compare with", "compares scenes/slanted-wall.ply with", "shows " + folder,
+                     "shows scenes/slanted-wall.ply", "is no longer compared with"});
+    checkQuiet(work, 20);
 }
+
+TEST_CASE("lists that are too short for what comes into view grow without a wait, and a few frames lack it") {
+    for (const std::string mode : {"temporal", "shared"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        REQUIRE(work.run("scene atelier --splats 80000 --out many.ply").exit_code == 0);
+        // From afar, where all of them are in a few tiles; first the other way.
+        const std::string script =
+            "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 1.5 position 0 1.6 0\n"
+            "head 1.51 position 0 1.6 0 turn 180 0\nat 2.4 exit\n";
+        const ViewRun run = runView(
+            work, "fill", script,
+            "many.ply --load-first --hide-hands --hide-panel --eye 0,0,-30 --look 0,0,-60 --up 0,-1,0 "
+            "--mode " +
+                mode,
+            kWatched);
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        const std::vector<std::string> incomplete = run.lines("frames shown incomplete because a list was ");
+        REQUIRE_FALSE(incomplete.empty());
+        // Not to the end.
+        const auto frameOf = [](const std::string& line) {
+            return std::stoul(line.substr(line.find_first_of("0123456789")));
+        };
+        CHECK(frameOf(incomplete.back()) + 20 < run.frames.size());
+        checkQuiet(work);
+    }
+}
+
+TEST_CASE("a scene that moves, or whose parts come and go, is shown without a wait") {
+    const Workplace work;
+    std::vector<std::string> scenes{"slide --scene-rate 15"};
+    writeSliding((work.path / "slide").string(), 12, 2000);
+#ifdef BINOSPLAT_SOG
+    splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
+               {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
+    scenes.emplace_back("split --splat-budget 9000");
+#endif
+    for (const std::string& scene : scenes) {
+        for (const std::string mode : {"temporal", "shared"}) {
+            CAPTURE(scene);
+            CAPTURE(mode);
+            const ViewRun run = runView(
+                work, "parts",
+                "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 1.5 position 0 1.6 0\n"
+                "head 2 position 0 1.6 0 turn 90 0\nat 4 exit\n",
+                scene + " --load-first --hide-hands --mode " + mode, kWatched);
+            INFO(run.outcome.output << run.outcome.errors);
+            CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+            checkQuiet(work);
+        }
+    }
+}
+
+#ifdef BINOSPLAT_WEB_TESTS
+TEST_CASE("while there is no scene frames wait for nothing, nor does the first that shows one") {
+    for (const std::string mode : {"temporal", "predicted", "shared"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        REQUIRE(work.run("scene slanted-wall --out wall.ply").exit_code == 0);
+        // The scene comes once two seconds of frames were shown.
+        std::atomic<bool> is_over = false;
+        WebServer server([&, bytes = work.bytesOf("wall.ply")](const WebRequest&) {
+            while (!is_over && std::ranges::count(textIn(work.path / "waits.txt"), '\n') < 90) {
+                std::this_thread::yield();
+            }
+            return answer("200 OK", "ETag: \"1\"\r\n", bytes);
+        });
+        const std::string script = "rate 45\nsize 64 64\nframes none\nvisibility-mask on\n";
+        const ViewRun run =
+            runView(work, "late", script, server.at("/wall.ply") + " --hide-hands --frames 60 --mode " + mode,
+                    kWatched +
+                        " SIMULATED_OPENXR_CLOCK=real no_proxy=127.0.0.1 "
+                        "XDG_CACHE_HOME=\"$PWD/../caches\"");
+        is_over = true;
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        CHECK(run.says("shows " + server.at("/wall.ply")));
+        CHECK_FALSE(run.says("frames shown incomplete"));
+        checkQuiet(work);
+    }
+}
+#endif
 
 TEST_CASE("new letters come without a wait") {
     const Workplace work;

@@ -213,6 +213,17 @@ TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files,
           0);
 }
 
+TEST_CASE_FIXTURE(AtWork, "--frames counts those of the scene, not those before it is loaded") {
+    const ViewRun run = runClean(work, "late", "rate 90\nsize 96 96\nframes none\n",
+                                 "builtin:fence --mode shared --hide-hands --hide-panel --frames 12");
+    const std::vector<std::string> shows = run.lines("shows builtin:fence");
+    REQUIRE(shows.size() == 1);
+    const std::size_t before = std::stoul(shows[0].substr(shows[0].find(' ')));
+    CHECK(before > 4);  // in lock-step they come at once
+    CHECK(run.frames.size() >= before + 12);
+    CHECK(run.frames.size() <= before + 16);
+}
+
 TEST_CASE(
     "the wearer begins at the scene's own view, upright, wherever the runtime's spaces begin, and again when "
     "it recentres") {
@@ -358,6 +369,18 @@ TEST_CASE_FIXTURE(AtWork, "bad input is known by its exit code, and named") {
             CHECK(outcome.errors.find(error) != std::string::npos);
         }
         CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
+    }
+    // Neither headset nor window, in one line.
+    for (const std::string display : {"", ":9999"}) {
+        const Outcome outcome = work.run(
+            "builtin:fence", "XR_RUNTIME_JSON=/nonexistent/runtime.json WAYLAND_DISPLAY= DISPLAY=" + display);
+        INFO(outcome.output << outcome.errors);
+        CHECK(these(outcome.exit_code, outcome.output.empty()) == these(3, true));
+        CHECK(outcome.errors.starts_with(fmt::format(
+            "binosplat: no window: no display can be opened that Vulkan can show on (DISPLAY is {}, "
+            "WAYLAND_DISPLAY is not set); no headset: no OpenXR runtime found",
+            display.empty() ? "not set" : display)));
+        CHECK(std::ranges::count(outcome.errors, '\n') == 1);
     }
     CHECK(std::filesystem::file_size(work.path / "mine" / "frame_000000.png") == 7);
     CHECK_FALSE(std::filesystem::exists(work.path / "mine" / "frames.jsonl"));

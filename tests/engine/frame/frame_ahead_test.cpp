@@ -210,7 +210,7 @@ TEST_CASE_FIXTURE(Atelier,
             const auto waited = StereoFrame::beside(frame);
             FrameSettings settings = makeSettings(mode);
             settings.keep_history = hasHistory(mode);
-            settings.waits_after_jump = false;
+            settings.waits_for_lists = false;
             if (has_room) { frame.renderAhead(there, settings); }
             goAhead(frame, has_room ? before : nowhere, settings, 3);
             settings.mark = 1;
@@ -220,14 +220,97 @@ TEST_CASE_FIXTURE(Atelier,
             if (has_room) {
                 last = frame.finish().value();
             } else {
-                last = goAhead(frame, there, settings, 3);
-                frame.finish();
+                // How long one list must be is known once another one is long enough. What finish() waits
+                // for, frames do not.
+                for (int round = 0; round < 4; ++round) {
+                    last = goAhead(frame, there, settings, 3);
+                    frame.finish();
+                }
             }
             CHECK((countOf(last, "frames_cut_short") > 0) == !has_room);
+            CHECK(countOf(last, "frames_done_again") == 1);  // the first one
             waited->render(there, settings);
             CHECK(shownBy(frame) == shownBy(*waited));
         }
     }
+}
+
+TEST_CASE_FIXTURE(Atelier,
+                  "lists that fill up grow on a thread of their own, before a frame is cut short, and while "
+                  "no frame is waited for") {
+    KeptFrame frame(context(), scene, kNoRoom);
+    FrameSettings settings = seeing();
+    settings.waits_for_lists = false;
+    const Eye aside = turned(view.eye, 0.9);
+    std::uint64_t mark = 0, bytes = 0;
+    FrameResult last{};
+    for (int step = 0; step < 48; ++step) {
+        settings.mark = ++mark;
+        const auto told = frame.renderAhead(eyesAt(aside, -step), settings);
+        if (mark == 1) { bytes = context().memoryUse().current_bytes; }
+        // The first one is waited for, and no other; nothing is on the way after finish().
+        const bool tells_nothing = mark < 4 || step % 4 < 2;
+        CHECK((told ? told->mark : 0) == (mark == 1 ? 1 : tells_nothing ? 0 : mark - 2));
+        if (step % 4 == 3) { last = frame.finish().value(); }
+    }
+    CHECK(countOf(last, "frames_cut_short") == 0);
+    CHECK(context().memoryUse().current_bytes > bytes);
+}
+
+TEST_CASE_FIXTURE(Atelier,
+                  "where longer lists do not fit beside those that are there, the frame that needs them is "
+                  "waited for") {
+    const auto all = eyesAt(view.eye, 0);
+    std::array<Eye, 2> less = all;
+    KeptFrame counting(context(), scene);
+    const auto pairsOf = [&](const std::array<Eye, 2>& eyes) {
+        return static_cast<double>(countOf(counting.render(eyes, seeing()), "tile_pairs_left"));
+    };
+    const double most = pairsOf(all);
+    for (double turn = 0.1; 1.8 * pairsOf(less) > most; turn += 0.1) {
+        less = stereoPair(turned(view.eye, turn), 0.063);
+    }
+    FrameSettings settings = seeing();
+    settings.waits_for_lists = false;
+    struct Bytes {
+        std::uint64_t without_lists, with_few, with_all;
+    };
+    // With `spare`, no more memory is left than that once the first lists are there.
+    const auto goOn = [&](StereoFrame& frame, const Context& on, std::optional<std::uint64_t> spare,
+                          FrameResult& last) {
+        const auto bytes = [&] { return on.memoryUse().current_bytes.load(); };
+        Bytes found{};
+        frame.reserve(less, settings);
+        found.without_lists = bytes();
+        goAhead(frame, less, settings, 1);
+        found.with_few = bytes();
+        const Buffer filler(on, "filler", spare ? on.memoryLimitBytes() - found.with_few - *spare : 0);
+        for (int round = 0; round < 6; ++round) {
+            last = goAhead(frame, all, settings, 3);
+            frame.finish();
+        }
+        found.with_all = bytes();
+        return found;
+    };
+    const Context plenty;
+    const GpuScene on_plenty(plenty, view.scene);
+    StereoFrame with_plenty(plenty, on_plenty, kNoRoom);
+    FrameResult last{};
+    const Bytes bytes = goOn(with_plenty, plenty, std::nullopt, last);
+    CHECK(countOf(last, "frames_done_again") == 1);  // the first one
+    ContextOptions limited;
+    limited.memory_limit_bytes = bytes.with_all + (64 << 20);
+    const Context small(limited);
+    const GpuScene on_small(small, view.scene);
+    const PairOfValues whole = shownBy(with_plenty);
+    // Somewhere between too little for any, and enough for old and new ones at a time.
+    std::size_t waited = 0;
+    for (int tenths = 1; tenths <= 12; ++tenths) {
+        StereoFrame frame(small, on_small, kNoRoom);
+        goOn(frame, small, (bytes.with_all - bytes.with_few) * static_cast<std::uint64_t>(tenths) / 10, last);
+        waited += countOf(last, "frames_done_again") > 1 && shownBy(frame) == whole ? 1 : 0;
+    }
+    CHECK(waited > 0);
 }
 
 TEST_CASE_FIXTURE(Atelier, "kernels that were made before change nothing in a picture") {
@@ -341,7 +424,8 @@ TEST_CASE_FIXTURE(Atelier, "other sizes, modes and hidden tiles wait for the fra
 
 TEST_CASE_FIXTURE(
     Gpu,
-    "a frame that goes on with another's kernels draws its own scene, and the other one can go or go on") {
+    "frames with the same kernels draw their own scenes, also on two threads at once, and one of them can "
+    "go") {
     const ViewedScene view = viewAtelier(), other_view = test::viewBuiltin("builtin:fence", {96, 96});
     const GpuScene scene(context(), view.scene), other_scene(context(), other_view.scene);
     const auto pictureOf = [](StereoFrame& frame, const Eye& eye) {
@@ -354,16 +438,20 @@ TEST_CASE_FIXTURE(
     };
     const auto expected = pictureAlone(scene, view.eye),
                other_expected = pictureAlone(other_scene, other_view.eye);
-    auto before = std::make_unique<StereoFrame>(context(), other_scene);
-    for (int step = 0; step < 2; ++step) {
-        before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted));
-    }
-    KeptFrame frame(context(), scene);
-    frame.takeKernels(*before);  // while frames are in flight
+    PassKernels kernels(context());
+    StereoFrame frame(context(), scene, kernels);
+    auto other = std::make_unique<StereoFrame>(context(), other_scene, kernels);
+    // Both make those that they need.
+    std::vector<float> other_picture;
+    std::thread beside([&] { other_picture = pictureOf(*other, other_view.eye); });
     CHECK(pictureOf(frame, view.eye) == expected);
-    CHECK(pictureOf(*before, other_view.eye) == other_expected);
-    before.reset();
+    beside.join();
+    CHECK(other_picture == other_expected);
+    const std::size_t made = kernels.size();
+    CHECK(pictureOf(*other, other_view.eye) == other_expected);
+    other.reset();
     CHECK(pictureOf(frame, view.eye) == expected);
+    CHECK(kernels.size() == made);
     frame.rebuildKernels();
     CHECK(pictureOf(frame, view.eye) == expected);
 }

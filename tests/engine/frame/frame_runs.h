@@ -8,52 +8,41 @@
 
 namespace binosplat::test {
 
-// While this exists, frames on the tests' own device reuse kernels that were made earlier in this program.
-// This applies to frames whose options leave the threads per cell to the device; those that choose the number
-// make kernels of their own.
+// The kernels of all frames on the tests' own device whose options leave the threads per cell to the device:
+// made once in this program. Other frames make kernels of their own.
 class KeptKernels {
-public:
-    KeptKernels(const Context& context, StereoFrame& frame, const FrameOptions& options = {})
-        : frame_(frame),
-          pool_(&context == &Gpu::shared() && options.threads_per_cell == 0 ? &pool() : nullptr) {
-        if (pool_ != nullptr) { frame_.takeKernels(pool_->frame); }
-    }
-    KeptKernels(const KeptKernels&) = delete;
-    KeptKernels& operator=(const KeptKernels&) = delete;
-    ~KeptKernels() {
-        if (pool_ != nullptr) { pool_->frame.takeKernels(frame_); }
-    }
+protected:
+    KeptKernels(const Context& context, const FrameOptions& options)
+        : own_(isShared(context, options) ? nullptr
+                                          : std::make_unique<PassKernels>(context, options.threads_per_cell)),
+          kernels(own_ ? *own_ : shared()) {}
 
 private:
-    struct Pool {
-        GpuScene scene{Gpu::shared(), viewBuiltin("builtin:one-splat", {16, 16}).scene};
-        StereoFrame frame{Gpu::shared(), scene};
-    };
-    static Pool& pool() {
-        static Pool made;
+    static bool isShared(const Context& context, const FrameOptions& options) {
+        return &context == &Gpu::shared() && options.threads_per_cell == 0;
+    }
+    static PassKernels& shared() {
+        static PassKernels made(Gpu::shared());
         return made;
     }
+    std::unique_ptr<PassKernels> own_;
 
-    StereoFrame& frame_;
-    Pool* pool_;
+protected:
+    PassKernels& kernels;
 };
 
 struct OwnScene {
     std::optional<GpuScene> own_scene;
 };
-// A frame with such kernels, of a scene on the device or of one that it uploads itself. While one exists,
-// other frames make their kernels again, unless they come from StereoFrame::beside it.
-class KeptFrame : private OwnScene, public StereoFrame {
+// A frame with such kernels, of a scene on the device or of one that it uploads itself.
+class KeptFrame : private OwnScene, private KeptKernels, public StereoFrame {
 public:
     KeptFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {})
-        : StereoFrame(context, scene, options), kept_(context, *this, options) {}
+        : KeptKernels(context, options), StereoFrame(context, scene, kernels, options) {}
     KeptFrame(const Context& context, const Scene& scene, const FrameOptions& options = {})
         : OwnScene{std::optional<GpuScene>(std::in_place, context, scene)},
-          StereoFrame(context, *own_scene, options),
-          kept_(context, *this, options) {}
-
-private:
-    KeptKernels kept_;
+          KeptKernels(context, options),
+          StereoFrame(context, *own_scene, kernels, options) {}
 };
 
 // 0 before the first frame.

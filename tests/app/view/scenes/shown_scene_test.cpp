@@ -208,7 +208,9 @@ TEST_CASE_FIXTURE(
     Shown,
     "a loader that was told to give up ends, and keeps nothing in memory, whether it was in time or not") {
     const std::uint64_t before = context().memoryUse().current_bytes;
-    SceneLoader early(context(), "builtin:fence", options.run), late(context(), "builtin:fence", options.run);
+    PassKernels kernels(context());
+    SceneLoader early(context(), kernels, "builtin:fence", options.run),
+        late(context(), kernels, "builtin:fence", options.run);
     early.cancel();
     while (!late.isDone()) { std::this_thread::yield(); }
     while (!early.isDone()) { std::this_thread::yield(); }

@@ -17,6 +17,14 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
 }
 
 TEST_CASE("an address begins with http or https; a name in its folder cannot lead out of it") {
+    for (const char* open : {"http://a/b.ply", "HTTP://127.example/b.ply", "http://localhost.example",
+                             "http://128.0.0.1/b.ply", "http://[::2]/b.ply"}) {
+        CHECK_MESSAGE(isOpenOnTheWay(open), open);
+    }
+    for (const char* closed : {"https://a/b.ply", "http://localhost/b.ply", "http://LocalHost:8000/b.ply",
+                               "http://127.0.0.1:80?a", "http://[::1]:8000/b.ply", "b.ply"}) {
+        CHECK_MESSAGE(!isOpenOnTheWay(closed), closed);
+    }
     CHECK(isAddress("http://a/b.ply"));
     CHECK(isAddress("HTTPS://a"));
     for (const char* other :

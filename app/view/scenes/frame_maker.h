@@ -1,0 +1,36 @@
+// Frames of a scene before it is shown, so that the first one that is shown finds its lists and pictures
+// made.
+#pragma once
+
+#include "engine/frame/stereo_frame.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace binosplat {
+
+// What such frames will be like.
+struct FramesWanted {
+    std::vector<Eye> eyes;
+    FrameSettings settings;  // with tiles that are hidden as below
+    std::array<std::vector<std::uint8_t>, 2> hidden_tiles;
+    std::vector<Eye> inset_eyes;  // empty: without insets
+    FrameSettings inset_settings;
+};
+
+// Their pictures' size, and of how many tiles it is known whether they show.
+glm::uvec3 shapeOfFrames(std::span<const Eye> eyes, const FrameSettings& settings);
+
+struct SceneFrames {
+    std::unique_ptr<StereoFrame> frame, insets;  // null: none
+    glm::uvec3 shape{0};
+};
+
+// Draws two of them that nobody sees; on any thread. `kernels` and `scene` outlive the frames; nobody else
+// uses the scene meanwhile. Throws Error if the device lacks the memory.
+SceneFrames makeFrames(const Context& context, PassKernels& kernels, const GpuScene& scene,
+                       const FramesWanted& wanted);
+
+}  // namespace binosplat
