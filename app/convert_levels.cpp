@@ -9,6 +9,7 @@
 #include "engine/files/compressed_ply.h"
 #include "engine/files/ply.h"
 #include "engine/levels/scene_levels.h"
+#include "engine/levels/surroundings.h"
 #include "engine/places/standpoint.h"
 #include "engine/scene/pick_splats.h"
 
@@ -82,6 +83,21 @@ Survey surveyParts(const SceneParts& parts, std::uint64_t count, const Progress&
     return survey;
 }
 
+// The part without what lies outside, which goes to `outside`.
+Scene takeOutside(const Scene& part, const Surroundings& around, Scene& outside) {
+    std::vector<std::uint32_t> near, far;
+    for (std::uint32_t i = 0; i < part.size(); ++i) {
+        (around.has(part.positions[i]) ? far : near).push_back(i);
+    }
+    Scene more = pickSplats(part, far);
+    if (outside.size() == 0) {
+        outside = std::move(more);
+    } else {
+        appendSplats(outside, more);
+    }
+    return pickSplats(part, near);
+}
+
 }  // namespace
 
 WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load,
@@ -109,11 +125,18 @@ WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Sce
         survey.centres = survey.sample.positions;
         parts = [&](const std::function<void(Scene)>& take) { take(survey.sample); };
     }
+    WrittenLevels written{survey.centres.size(), {}};
+    Scene environment;
+    if (const std::optional<Surroundings> around = findSurroundings(survey.centres)) {
+        std::erase_if(survey.centres, [&](const glm::vec3& centre) { return around->has(centre); });
+        parts = [&environment, around = *around, all = parts](const std::function<void(Scene)>& take) {
+            all([&](const Scene& part) { take(takeOutside(part, around, environment)); });
+        };
+    }
     writer.cutLeaves(survey.centres);
     LevelSettings settings;
     settings.levels = options.levels != 0 ? options.levels : levelsFor(survey.centres.size());
     settings.near = usualNear(survey.sample);
-    WrittenLevels written{survey.centres.size(), {}};
     survey.centres = {};
     ProgressLine line("writing " + options.out.string());
     if (settings.levels > 1) {
@@ -122,6 +145,11 @@ WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Sce
         writeSceneLevels(context, parts, settings, writer, line.progress());
     } else {
         writeOneLevel(parts, settings, writer, line.progress());
+    }
+    if (environment.size() > 0) {
+        writer.addEnvironment(environment);
+        notes.lines.push_back(
+            fmt::format("environment: {} splats, far outside of the others", environment.size()));
     }
     writer.finish();
     keepFirst(notes.lines);

@@ -202,6 +202,11 @@ void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const 
     counts_[level] += scene.size();
 }
 
+void StreamedWriter::addEnvironment(const Scene& scene, const Progress& progress) {
+    writeSogFolder(scene, (part_ / "env").string(), progress);
+    has_environment_ = true;
+}
+
 // By level: the mean square where its splats show, or the whole level's if none showed. Errors add up if a
 // level is compared with one that has errors itself, and no coarser level counts as better than a finer one.
 std::vector<double> StreamedWriter::errorsOf(const Node& leaf) const {
@@ -249,9 +254,10 @@ void StreamedWriter::finish() {
     boundParents(0);
     const std::string text = fmt::format(
         R"({{"version":1,"asset":{{"generator":"binosplat"}},"count":{},"counts":[{}],"lodLevels":{},)"
-        R"("lodErrors":{},"filenames":[{}],"tree":{}}})",
+        R"("lodErrors":{},{}"filenames":[{}],"tree":{}}})",
         std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}), fmt::join(counts_, ","),
-        counts_.size(), has_errors_, fmt::join(files_, ","), jsonOf(0));
+        counts_.size(), has_errors_, has_environment_ ? R"("environment":"env/meta.json",)" : "",
+        fmt::join(files_, ","), jsonOf(0));
     PartFile file((part_ / "lod-meta.json").string());
     file.write(text.data(), text.size());
     file.commit();

@@ -51,6 +51,8 @@ public:
     // `against`; empty at level 0, and otherwise if unknown.
     void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {},
              std::size_t against = 0, const Progress& progress = {});
+    // Splats that every level shows, whatever is chosen: at most once.
+    void addEnvironment(const Scene& scene, const Progress& progress = {});
     // How many splats each level has so far.
     [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
     // A path for scratch files, removed with the writer: a folder that does not exist yet.
@@ -89,7 +91,7 @@ private:
     std::vector<std::uint64_t> counts_;
     std::vector<std::size_t> chunks_;     // of each level
     std::vector<SplatError> all_errors_;  // of each level, of all leaves
-    bool has_errors_ = true;
+    bool has_errors_ = true, has_environment_ = false;
 };
 
 }  // namespace binosplat

@@ -27,6 +27,8 @@ const readChunk = async (url) => {
     return readSog(system, 'meta.json', { logging: 'silent' });
 };
 for (const { url } of octree.files) { chunks.set(url, await readChunk(url)); }
+const environment = meta.environment ? (await readChunk(join(folder, meta.environment))).numRows : 0;
+expect(!meta.environment || environment > 0, 'environment: has no splats');
 
 const ranges = new Map(), counts = Array(octree.lodLevels).fill(0);
 for (const node of octree.nodes) {
@@ -58,5 +60,5 @@ for (const { errors } of meta.lodErrors ? leavesOf(meta.tree) : []) {
     expect(errors.length === meta.lodLevels && errors[0] === 0 && errors.every((e, i) => i === 0 || e >= errors[i - 1]), `errors: ${errors}`);
 }
 for (const wrong of wrongs.slice(0, 10)) { console.log(`wrong: ${wrong}`); }
-console.log(`${octree.nodes.length} leaves, ${octree.files.length} chunks, levels of ${counts.join(', ')} splats; ${wrongs.length} wrongs`);
+console.log(`${octree.nodes.length} leaves, ${octree.files.length} chunks, levels of ${counts.join(', ')} splats, environment of ${environment}; ${wrongs.length} wrongs`);
 process.exit(wrongs.length === 0 ? 0 : 1);

@@ -61,6 +61,28 @@ TEST_CASE(
     CHECK(filesIn(folder.file("")).size() == 2 * files.size());
 }
 
+TEST_CASE("an environment is a chunk of its own that every level shows, and no leaf holds") {
+    const Folder folder;
+    const Scene scene = makeBuiltin("builtin:slanted-wall");
+    Scene sky = pickSplats(scene, std::vector<std::uint32_t>{0, 1, 2});
+    for (glm::vec3& position : sky.positions) { position.z += 900.0f; }
+    StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = 250});
+    writer.cutLeaves(scene.positions);
+    for (const std::size_t level : {0u, 1u}) { writer.add(level, scene); }
+    writer.addEnvironment(sky);
+    writer.finish();
+    const std::string text = textIn(folder.file("a") + "/lod-meta.json");
+    const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
+    CHECK(these(meta.environment, meta.levels[0].splats) == these("env/meta.json", scene.size()));
+    for (const LodLeaf& leaf : meta.tree) { CHECK(leaf.high.z < 100.0f); }
+    for (const std::uint32_t level : {0u, 1u}) {
+        LoadNotes notes;
+        const Scene back = loadScene(folder.file("a"), 0, &notes, {}, {level, {}});
+        REQUIRE(these(back.size(), notes.environment_splats) == these(scene.size() + 3, 3u));
+        CHECK(back.positions.back().z == doctest::Approx(sky.positions[2].z).epsilon(1e-3));
+    }
+}
+
 TEST_CASE(
     "what levels are off by is written for each leaf: it adds up, never falls, and is the level's mean where "
     "nobody looked") {

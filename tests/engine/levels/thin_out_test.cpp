@@ -3,6 +3,7 @@
 #include "engine/files/load_scene.h"
 #include "engine/files/lod_meta.h"
 #include "engine/levels/scene_levels.h"
+#include "engine/levels/surroundings.h"
 
 #include "engine/builtin/procedural.h"
 #include "engine/places/standpoint.h"
@@ -87,6 +88,30 @@ TEST_CASE_FIXTURE(Gpu, "what lies behind very many splats in a single tile is ju
     CHECK(thin_out.splatErrorsOf(scene).back().weight > 0.05);
     const std::vector<std::uint32_t> most = thin_out.choose(scene.size() - 1);
     CHECK(most.back() == scene.size() - 1);
+}
+
+TEST_CASE("what lies far outside is found if it is neither a few strays nor too much to be always shown") {
+    std::vector<glm::vec3> centres;
+    for (const glm::vec3& position : makeBuiltin("builtin:slanted-wall").positions) {
+        for (int copy = 0; copy < 4; ++copy) { centres.push_back(position); }
+    }
+    const std::size_t inside = centres.size();
+    CHECK(!findSurroundings(centres));
+    const auto withDome = [&](std::size_t count) {
+        centres.resize(inside);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto angle = static_cast<float>(i);
+            centres.push_back({200.0f * std::cos(angle), -30.0f, 200.0f * std::sin(angle)});
+        }
+        return findSurroundings(centres);
+    };
+    const auto found = withDome(1000);
+    REQUIRE(found);
+    CHECK(static_cast<std::size_t>(std::ranges::count_if(
+              centres, [&](const glm::vec3& centre) { return found->has(centre); })) == 1000);
+    CHECK(!found->has(centres[0]));
+    CHECK(!withDome(100));
+    CHECK(!withDome(inside / 2));
 }
 
 TEST_CASE_FIXTURE(
