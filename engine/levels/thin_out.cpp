@@ -14,8 +14,11 @@ namespace binosplat {
 
 namespace {
 
-// Splats that stay become wider by the share that stays, to this power.
-constexpr double kWidening = -0.125;
+// Splats that stay become wider by their share to this power: where few of many stay, they cover more. Those
+// that cover all that went would blur. No share counts as less than kLeastShare.
+constexpr double kWidening = -1.0 / 3.0, kLeastShare = 0.02;
+// What is added to each weight, in terms of their mean: who steps nearer sees what the eyes hardly see.
+constexpr double kAnyWeight = 0.1;
 // A step of the fit looks from every fourth eye: all eyes in four steps, each of which goes nearly as far as
 // one from all of them.
 constexpr std::size_t kParts = 4;
@@ -171,6 +174,10 @@ void ThinOut::weigh(const Progress& progress) {
         }
         left = std::move(too_full);
     }
+    const std::int64_t all = std::accumulate(weights_.begin(), weights_.end(), std::int64_t{0});
+    const auto any =
+        static_cast<std::int64_t>(kAnyWeight * static_cast<double>(all) / static_cast<double>(scene_.size()));
+    for (std::int64_t& weight : weights_) { weight += any; }
 }
 
 // Along a curve through the scene each splat adds its share, and one stays wherever these add up to another
@@ -192,12 +199,16 @@ std::vector<std::uint32_t> ThinOut::choose(std::uint64_t count) const {
 }
 
 Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {
-    Scene scene = pickSplats(scene_, choose(count));
+    const std::vector<std::uint32_t> chosen = choose(count);
+    Scene scene = pickSplats(scene_, chosen);
     if (scene.size() == 0 || scene.size() == scene_.size()) { return scene; }
-    const double kept = static_cast<double>(scene.size()) / static_cast<double>(scene_.size());
-    const auto wider = static_cast<float>(std::pow(kept, kWidening));
-    for (glm::vec2& scale : scene.scales) { scale *= wider; }
-    for (float& thickness : scene.thicknesses) { thickness *= wider; }
+    const double factor = factorFor(weights_, count);
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        const double share = std::max(shareOf(weights_[chosen[i]], factor), kLeastShare);
+        const auto wider = static_cast<float>(std::pow(share, kWidening));
+        scene.scales[i] *= wider;
+        if (scene.isGaussian3d()) { scene.thicknesses[i] *= wider; }
+    }
     fit(scene, progress);
     return scene;
 }
