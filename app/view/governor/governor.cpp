@@ -260,6 +260,8 @@ void Governor::giveBack(double now_ms) {
                             fmt::format("{:.1f} of {:.1f} ms left too little to spare", now_ms, period_ms_));
         }
     } else if (now_s_ - lowered_s_ >= wait_s_ && turnsKnobs()) {
+        // What is known of higher knobs is about to be corrected.
+        if (model_.mayBeChanging()) { return describe(now_ms, why_); }
         const GovernedSettings calm = bestWithin(kCalmly * roomMs()), bold = bestWithin(kBoldly * roomMs());
         const bool is_bold = model_.expectedError({bold.resolution_scale, bold.error_bound_db}) <
                              kMuchBetter * model_.expectedError(knobs());

@@ -99,6 +99,8 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     fit();
 }
 
+bool KnobModel::mayBeChanging() const { return changed_ >= kSeenForChange; }
+
 void KnobModel::learnWork(const Visit& before, const Visit& now) {
     const double up_db = now.knobs.bound_db - before.knobs.bound_db;
     if (up_db == 0.0 || !(now.work > 0.0) || !(before.work > 0.0)) { return; }

@@ -39,6 +39,8 @@ public:
     void add(const Knobs& knobs, const KnobFrame& frame);
 
     [[nodiscard]] bool knows() const { return !visits_.empty(); }
+    // True while frames take another time than before at the same knobs, but have not yet for long.
+    [[nodiscard]] bool mayBeChanging() const;
     // The expected time and error of a frame with such knobs, while the head moves as it did recently.
     [[nodiscard]] double expectedMs(const Knobs& knobs) const { return msBy(shares_, knobs); }
     [[nodiscard]] double expectedError(const Knobs& knobs) const;
