@@ -112,8 +112,8 @@ void FrameRoom::joinColours(const FramePlan& plan) {
     std::uint64_t bytes = 0, apart = 0;
     if (plan.isSortedInBothPictures()) {
         bytes = colourBytes(plan.targets[0].eye.size_px, plan.targets[0].kept);
-        const std::uint64_t step = Buffer::alignmentOf(context_);
-        apart = (bytes + step - 1) / step * step;
+        if (alignment_ == 0) { alignment_ = Buffer::alignmentOf(context_); }
+        apart = (bytes + alignment_ - 1) / alignment_ * alignment_;
         if (apart + bytes > context_.maxAllocationBytes()) { bytes = apart = 0; }
     }
     if (both_colours_.bytes() == apart + bytes) { return; }

@@ -117,6 +117,7 @@ private:
     std::function<void()> wait_for_frames_;
     FrameBuffers lists_;
     Buffer both_colours_;
+    std::uint64_t alignment_ = 0;  // of its parts; 0: not asked yet, since that makes a buffer
     std::array<Picture, kFramePictures> pictures_;
     Buffer moments_;
     std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others
