@@ -333,7 +333,7 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
         if (by_cross) {
             clickCross("^binosplat is waiting for a headset");
         } else {
-            hands("search --sync --onlyvisible --name '^binosplat waits' mousemove --window %1 20 20");
+            hands("search --sync --onlyvisible --name '^binosplat is waiting' mousemove --window %1 20 20");
             hands("key Escape");
         }
         CHECK(program.exitCode() == 0);

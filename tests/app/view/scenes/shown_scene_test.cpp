@@ -341,7 +341,7 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(scenes.name() == more);
     // This one cannot fit at all, so the previous scene comes back.
     scenes.begin(most);
-    CHECK(scenes.take(state).find(" goes first") != std::string::npos);
+    CHECK(scenes.take(state).find(" is removed first") != std::string::npos);
     CHECK(scenes.take(state).find("MiB") != std::string::npos);
     CHECK(scenes.get() == nullptr);
     CHECK(scenes.take(state).empty());
