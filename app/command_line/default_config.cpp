@@ -72,7 +72,7 @@ std::string defaultConfig() {
         "configs/default.toml` does the\n# same as without a config. The command line wins over a config. "
         "Keys are the options' names, in which '_' may be\n# written for '-'. A key may also be at the top, "
         "outside its table. Keys in comments have no default, or a\n# different one for each command. File "
-        "names are relative to this file. Made from the program's own table\n# (`binosplat document "
+        "names are relative to this file. Generated from the program's own table\n# (`binosplat document "
         "config`).\n";
     const char* table = "";
     for (const OptionRow<RunOptions>& row : runRows()) {

@@ -53,9 +53,8 @@ std::string commandsWith(const OptionText& text) {
 
 std::string markdown() {
     std::string text =
-        "# Options\n\nMade from the program's own table (`binosplat document markdown`). Every command "
-        "prints its part with "
-        "`--help`.\n\n## Commands\n";
+        "# Options\n\nGenerated from the program's own table (`binosplat document markdown`). Every command "
+        "prints its part\nwith `--help`.\n\n## Commands\n";
     for (const Command& command : shownCommands()) {
         text +=
             fmt::format("\n### {}\n\n{}.\n\n```\n{}\n```\n\n", command.name, command.help, usage(command));
@@ -70,7 +69,7 @@ std::string markdown() {
     text +=
         "\n## Shared options\n\nThe last column says which commands have the option. An option may also be "
         "set in a config file (`--config`):\nwithout its dashes, either at the top or in the table that is "
-        "named here. The command line wins.\n`[[methods]]`: a bench's methods may set it, too.\n";
+        "named here. The command line wins.\n`[[methods]]` means that a bench's methods may set it, too.\n";
     const char* table = "";
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(table) != row.text.table) {

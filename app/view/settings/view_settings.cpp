@@ -89,8 +89,8 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
             "the page that the panel opens with; time: only for a scene that moves; help: only in a headset",
             field::named<&S::page>({"view", "scenes", "method", "time", "help"})),
         row("first-steps", "WHEN",
-            "explain three gestures at the start: once means the first time; with --simulate never, unless "
-            "this says otherwise",
+            "explain three gestures at the start; once: only the first time; with --simulate: never, unless "
+            "this is set",
             field::named<&S::first_steps>({"once", "always", "never"})),
         row("vignette", "", "darken the edge of the view while a stick moves the wearer",
             field::flag<&S::vignette>()),
