@@ -55,9 +55,10 @@ void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
 void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
                              const Look& look, bool waits) {
     const glm::uvec2 size_px = eyes.front().size_px;
-    reserve(size_px, eyes.size());
+    const glm::uvec2 room_px = glm::max(settings.most_px, size_px);
+    reserve(room_px, eyes.size());
     frame.reserve(eyes, settings);
-    presenter_.reserve(size_px, false);
+    presenter_.reserve(room_px, false);
     const auto present = [&](Commands& commands) {
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             const vk::Image image = *images_[e]->image;

@@ -223,11 +223,15 @@ void DesktopShell::drawScene(double seconds) {
 }
 
 void DesktopShell::render(double scale, bool at_rest) {
-    scale *= state_.settings().resolution_scale;
-    const glm::uvec2 size_px =
-        glm::max(glm::uvec2(glm::round(scale * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
+    const auto sizeAt = [&](double share) {
+        const double of_part = share * state_.settings().resolution_scale;
+        return glm::max(glm::uvec2(glm::round(of_part * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
+    };
+    const glm::uvec2 size_px = sizeAt(scale);
     FrameSettings settings = frameSettingsNow(at_rest);
-    settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale));
+    settings.most_px = sizeAt(1.0);
+    settings.mark =
+        static_cast<std::uint64_t>(std::lround(1000.0 * scale * state_.settings().resolution_scale));
     const std::vector<Eye> eyes = eyesOf(mover_.camera(), windowSight(), size_px);
     pictures_.render(scenes_.frame(), eyes, settings, look(), at_rest);
     renderOther(eyes, settings, at_rest);

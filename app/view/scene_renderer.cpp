@@ -103,7 +103,8 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
     if (headset.inset) { make(headset.inset_images, inset_px); }
 }
 
-void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views) {
+void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views,
+                           ShownScene& shown) {
     // With coarse tiles both eyes are rendered whatever the budget.
     const StereoOptions& stereo = settings.stereo;
     const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery &&
@@ -111,22 +112,39 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
     governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode,
                    {stereo.warp.budget, settings.resolution_scale, stereo.warp.error_bound_db});
     fitImages(headset, settings, views);
-    if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
-    const double scale = governor_.settings().resolution_scale;
+    takeGoverned(headset, views, shown);
+    const double scale = governed_.resolution_scale;
     view_px_ = sizePx(scale);
     headset.images->draw(view_px_);
     if (headset.inset) { headset.inset_images->draw(insetPx(headset, scale)); }
 }
 
+void SceneRenderer::takeGoverned(const ConnectedHeadset& headset, const FrameViews& views,
+                                 ShownScene& shown) {
+    const GovernedSettings& chosen = governor_.settings();
+    if (chosen == governed_) { return; }
+    // Larger pictures may need longer lists, which are made beside frames of the present size.
+    const glm::uvec2 size_px = sizePx(chosen.resolution_scale),
+                     before_px = sizePx(governed_.resolution_scale);
+    const bool fits =
+        governed_count_ > 0 && glm::all(glm::lessThanEqual(before_px, headset.images->sizePx()));
+    if (fits && glm::any(glm::greaterThan(size_px, before_px)) &&
+        !shown.makeRoomFor(stays_ ? coverPx(views, size_px) : size_px,
+                           insetPx(headset, chosen.resolution_scale))) {
+        return;
+    }
+    governed_ = chosen;
+    ++governed_count_;
+}
+
 ShownRate SceneRenderer::rate() const {
-    ShownRate rate{met_.metHz(), met_.displayHz(),    met_.late(), governor_.settings().resolution_scale, {},
+    ShownRate rate{met_.metHz(), met_.displayHz(),    met_.late(), governed_.resolution_scale, {},
                    {},           governor_.isBeaten()};
     const bool renders_both = frame_.mode == Mode::kPredicted && hasCoarseTiles(frame_, 2);
-    const GovernedSettings& chosen = governor_.settings();
-    if (chosen.error_bound_db > 0.0 && frame_.mode == Mode::kTemporal) {
-        rate.bound_db = chosen.error_bound_db;
+    if (governed_.error_bound_db > 0.0 && frame_.mode == Mode::kTemporal) {
+        rate.bound_db = governed_.error_bound_db;
     } else if (hasBudget(frame_.mode) && !renders_both) {
-        rate.budget = chosen.budget;
+        rate.budget = governed_.budget;
     }
     return rate;
 }
@@ -155,8 +173,8 @@ glm::dvec3 SceneRenderer::backgroundOf(const ViewSettings& settings, const glm::
 FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings,
                                              double scale, const FrameViews& views) {
     StereoOptions stereo = settings.stereo;
-    stereo.warp.budget = governor_.settings().budget;
-    stereo.warp.error_bound_db = governor_.settings().error_bound_db;
+    stereo.warp.budget = governed_.budget;
+    stereo.warp.error_bound_db = governed_.error_bound_db;
     if (headset.inset) { stereo.half_periphery = false; }  // the runtime overlays the inset
     FrameSettings frame = frameSettings(options_.camera, stereo, kWearersOrder);
     // In the wearer's metres, however large the scene is.
@@ -171,6 +189,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
     frame.keep_history = true;
     frame.waits_for_lists = false;
+    frame.most_px = headset.images->sizePx();
     frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
@@ -223,6 +242,16 @@ FramesWanted SceneRenderer::framesWanted(const ConnectedHeadset& headset,
     return wanted;
 }
 
+FramesWanted SceneRenderer::framesWanted(ConnectedHeadset& headset, const Similarity& scene_from_room,
+                                         const ViewSettings& settings, FrameViews views,
+                                         const Similarity& there_from_here) {
+    const StayingAxes axes = axes_;  // which follow once a frame
+    aim(headset, scene_from_room, settings, views);
+    FramesWanted wanted = std::as_const(*this).framesWanted(headset, there_from_here);
+    axes_ = axes;
+    return wanted;
+}
+
 void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
                             const ViewSettings& settings, FrameViews& views) {
     aim(headset, scene_from_room, settings, views);
@@ -265,6 +294,7 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
     inset_frame_ = frame_;
     inset_frame_.hidden_tiles = {};
     inset_frame_.gazes = {};
+    inset_frame_.most_px = headset.inset_images->sizePx();
     const glm::uvec2 size_px = headset.inset_images->partPx();
     for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
@@ -325,7 +355,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
             record_panel(commands);
         },
         window != nullptr ? window->drawn() : vk::Semaphore());
-    const bool is_of_now = known && known->mark == governed_count_;
+    const bool is_of_now = known && known->mark == governed_count_ && governed_ == governor_.settings();
     if (known) {
         last_ = std::move(*known);
         last_.gpu_total_ms += insets_ms_;
@@ -333,6 +363,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
     LoadedScene& scene = *shown.drawn();
     scene.count(last_.counters);
     if (known && scene.stream) { fitSplats(*scene.stream, headset.session.periodMs()); }
+    const GovernedSettings before = governor_.settings();
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
                        .period_ms = headset.session.periodMs(),
                        .is_old = !is_of_now,
@@ -340,7 +371,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .work = last_.work_rendered,
                        .warp_error = last_.warp_error,
                        .half_loss = last_.half_loss});
-    sayGoverned();
+    sayGoverned(governor_.settings() != before);
     sayCutShort(shown.drawsOther());
 }
 
@@ -357,7 +388,7 @@ void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const Ster
         const Buffer& pixels = stays_ ? presenter_.turn(commands, images.partPx(), view_px_,
                                                         pictureFromView(eyes_[at], seen_[at]))
                                       : presenter_.pixels();
-        window->keepEye(commands, pixels, view_px_, format_);
+        window->keepEye(commands, pixels, view_px_, images.sizePx(), format_);
     }
 }
 
@@ -370,8 +401,7 @@ void SceneRenderer::fitSplats(SceneStream& stream, double period_ms) {
     }
 }
 
-void SceneRenderer::sayGoverned() {
-    const bool is_other = governor_.settings() != governed_;
+void SceneRenderer::sayGoverned(bool is_other) {
     if (is_other || (governor_.isBeaten() && !said_beaten_)) { log_.say(governor_.sentence()); }
     // Once for the same settings, even if frames fit now and then.
     said_beaten_ = governor_.isBeaten() || (said_beaten_ && !is_other);

@@ -40,9 +40,11 @@ public:
         return sizePx(settings.resolution_scale);
     }
     // Makes the headset's images as large as the wearer wants, or larger if axes stay, and lets the governor
-    // adjust the wearer's settings, never above them. Throws Error if images of another size cannot be made;
-    // then they keep their size.
-    void govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
+    // adjust the wearer's settings, never above them. What it chooses is drawn once lists of the shown scene
+    // have capacity for that. Throws Error if images of another size cannot be made; then they keep their
+    // size.
+    void govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views,
+                ShownScene& shown);
     // For a runtime that turned out to refuse depth; returns false if depth was already off.
     bool dropDepth(ConnectedHeadset& headset);
 
@@ -52,6 +54,10 @@ public:
     // Frames like that one, of another scene.
     [[nodiscard]] FramesWanted framesWanted(const ConnectedHeadset& headset,
                                             const Similarity& there_from_here) const;
+    // The same for frames with other settings, before prepare().
+    [[nodiscard]] FramesWanted framesWanted(ConnectedHeadset& headset, const Similarity& scene_from_room,
+                                            const ViewSettings& settings, FrameViews views,
+                                            const Similarity& there_from_here);
     // Aims, and prepares what render() will show of the scene that is drawn. Throws Error if memory is short;
     // then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
@@ -102,6 +108,7 @@ private:
     };
     void fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
+    void takeGoverned(const ConnectedHeadset& headset, const FrameViews& views, ShownScene& shown);
     // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the
     // wearer wants that.
     [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings,
@@ -129,7 +136,7 @@ private:
     void fitSplats(SceneStream& stream, double period_ms);
     void sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden);
     void sayCutShort(bool of_other);
-    void sayGoverned();
+    void sayGoverned(bool is_other);  // than before
 
     const xr::Instance& instance_;
     const RunOptions& options_;
@@ -153,7 +160,7 @@ private:
     std::vector<Eye> inset_eyes_;
     std::optional<glm::uvec2> context_px_;  // recommended for the context, if there are insets
     double insets_ms_ = 0.0;                // GPU time of the last known insets
-    GovernedSettings governed_;             // in the frame drawn last
+    GovernedSettings governed_;             // in the frame that is drawn
     std::uint64_t governed_count_ = 0;
     std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;

@@ -164,9 +164,15 @@ bool Viewer::prepareScene(FrameViews& views) {
     }
     drawn_ = waits ? drawable : state_.settings();
     try {
-        renderer_.govern(headset(), drawn_, views);
+        renderer_.govern(headset(), drawn_, views, scenes_);
         if (scenes_.get() != nullptr) {
-            renderer_.prepare(headset(), scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), drawn_, views);
+            const Similarity drawn = scenes_.drawnFrom(state_.sceneFromRoom());
+            if (const std::optional<Similarity> there = scenes_.toRemake()) {
+                scenes_.remakeFrames(
+                    renderer_.framesWanted(headset(), drawn, state_.settings(), views, *there));
+            }
+            renderer_.prepare(headset(), scenes_, drawn, drawn_, views);
+            scenes_.keepDrawn(drawn_);
         }
         state_.keepFitting(drawn_);
         return true;
@@ -179,9 +185,10 @@ bool Viewer::prepareScene(FrameViews& views) {
         if (change.empty()) { throw; }
         say(fmt::format("{} does not fit: {}", change, error.what()));
     }
+    scenes_.forgetDrawn();
     state_.goBack();
     drawn_ = state_.settings();
-    renderer_.govern(headset(), drawn_, views);
+    renderer_.govern(headset(), drawn_, views, scenes_);
     return false;
 }
 

@@ -112,7 +112,7 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     }
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
     panel_.askFor(files_, state_.settings());
-    if (status.files.empty() && scenes_.isMakingKernels()) {
+    if (status.files.empty() && scenes_.isMakingMethod()) {
         status.files = fmt::format("preparing {}", nameOf(state_.settings().stereo.mode));
     }
     keepPreferences(step_seconds, false);

@@ -26,7 +26,7 @@ std::uint64_t colourBytes(glm::uvec2 size_px, const Kept& kept) {
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.history || target.from_history_later) {
-        return {.size_px = target.eye.size_px,
+        return {.room_px = target.room_px,
                 .classes = false,
                 .half_floats = target.kept.half_floats,
                 .history = true,
@@ -35,7 +35,7 @@ WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (!target.warp) { return {}; }
     const bool components =
         target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
-    return {.size_px = target.eye.size_px,
+    return {.room_px = target.room_px,
             .classes = target.keeps_classes || components,
             .half_floats = target.kept.half_floats,
             .history = false,
@@ -61,11 +61,14 @@ void FrameRoom::show(const GpuScene& scene) {
     first_frame_ = room_ahead_fits_ = fits_beside_ = true;
 }
 
-void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes) {
-    if (buffer.bytes() == bytes) { return; }
-    if (buffer.bytes() > 0) { wait_for_frames_(); }
-    buffer = {};
-    buffer = Buffer(context_, name, bytes);
+void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes,
+                       std::optional<std::uint64_t> used) {
+    if (buffer.madeBytes() != bytes) {
+        if (buffer.madeBytes() > 0) { wait_for_frames_(); }
+        buffer = {};
+        buffer = Buffer(context_, name, bytes);
+    }
+    buffer.use(used.value_or(bytes));
 }
 
 void FrameRoom::growLists(const FrameCapacity& capacity) {
@@ -105,13 +108,14 @@ void FrameRoom::fitWarps(const FramePlan& plan) {
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
         if (warps_[t].needs() != needs[t]) { warps_[t] = WarpBuffers(context_, needs[t]); }
+        if (needs[t].room_px.x > 0) { warps_[t].use(plan.targets[t].eye.size_px); }
     }
 }
 
 void FrameRoom::joinColours(const FramePlan& plan) {
     std::uint64_t bytes = 0, apart = 0;
     if (plan.isSortedInBothPictures()) {
-        bytes = colourBytes(plan.targets[0].eye.size_px, plan.targets[0].kept);
+        bytes = colourBytes(plan.targets[0].room_px, plan.targets[0].kept);
         if (alignment_ == 0) { alignment_ = Buffer::alignmentOf(context_); }
         apart = (bytes + alignment_ - 1) / alignment_ * alignment_;
         if (apart + bytes > context_.maxAllocationBytes()) { bytes = apart = 0; }
@@ -130,36 +134,42 @@ void FrameRoom::joinColours(const FramePlan& plan) {
 EmptyPictures FrameRoom::emptyPictures(const FramePlan& plan, const TargetPlan& target) const {
     if (!plan.isSortedInPicture(target)) { return {}; }
     const Buffer& memory = plan.isSortedInBothPictures() ? both_colours_ : picture(target.picture).colours;
-    return {memory.address<gpu::uint>(), memory.bytes()};
+    return {memory.address<gpu::uint>(), memory.madeBytes()};
 }
 
-void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept) {
-    const glm::uvec2 tiles = tilesOf(size_px);
-    const std::uint64_t pixels = std::uint64_t{size_px.x} * size_px.y;
+void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 room_px, const Kept& kept) {
+    const auto pixels = [](glm::uvec2 size) { return std::uint64_t{size.x} * size.y; };
+    const auto fit = [&](Buffer& buffer, const char* name, bool is_kept, const auto& bytesOf) {
+        resize(buffer, name, is_kept ? bytesOf(room_px) : 0, is_kept ? bytesOf(size_px) : 0);
+    };
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
-    resize(picture.colours, "colours", colourBytes(size_px, kept));
-    resize(picture.depths, "depths", kept.depth && !kept.history ? pixels * sizeof(float) : 0);
-    resize(picture.words, "depths of the history", kept.history ? pixels * sizeof(gpu::uint) : 0);
-    resize(picture.tiles, "tiles of the history",
-           kept.history ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::HistoryTile) : 0);
+    fit(picture.colours, "colours", true, [&](glm::uvec2 size) { return colourBytes(size, kept); });
+    fit(picture.depths, "depths", kept.depth && !kept.history,
+        [&](glm::uvec2 size) { return pixels(size) * sizeof(float); });
+    fit(picture.words, "depths of the history", kept.history,
+        [&](glm::uvec2 size) { return pixels(size) * sizeof(gpu::uint); });
+    fit(picture.tiles, "tiles of the history", kept.history,
+        [&](glm::uvec2 size) { return pixels(tilesOf(size)) * sizeof(gpu::HistoryTile); });
 }
 
 void FrameRoom::fitPictures(const FramePlan& plan,
                             const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
-    std::uint64_t most_tiles = 0, moments_bytes = 0;
+    std::uint64_t most_tiles = 0, moments_bytes = 0, moments_used = 0;
     std::array<bool, kFramePictures> is_used{};
     for (std::size_t t = 0; t < shown_.size(); ++t) {
         const bool used = t < plan.targets.size();
         const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0),
-                         tiles = tilesOf(size_px);
-        most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
+                         room_px = used ? plan.targets[t].room_px : glm::uvec2(0), tiles = tilesOf(size_px),
+                         room_tiles = tilesOf(room_px);
+        most_tiles = std::max(most_tiles, std::uint64_t{room_tiles.x} * room_tiles.y);
         const auto hidden = used && t < plan.eyes ? hidden_tiles[t] : std::span<const std::uint8_t>{};
         assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
-        shown_[t].set(hidden, tiles);
+        shown_[t].set(hidden, tiles, room_tiles);
         if (!used) { continue; }
         if (plan.targets[t].kept.moments) {
-            moments_bytes = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2);
+            moments_bytes = std::uint64_t{room_px.x} * room_px.y * sizeof(gpu::vec2);
+            moments_used = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2);
         }
         is_used[static_cast<std::size_t>(plan.targets[t].picture)] = true;
         // A history stays as it is.
@@ -169,7 +179,7 @@ void FrameRoom::fitPictures(const FramePlan& plan,
     }
     if (plan.spare_picture) { is_used[static_cast<std::size_t>(*plan.spare_picture)] = true; }
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
-        if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
+        if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {0, 0}, {}); }
     }
     joinColours(plan);
     // The histories of both eyes have memory for what either leaves, since they change places.
@@ -179,11 +189,13 @@ void FrameRoom::fitPictures(const FramePlan& plan,
         Kept kept = target.kept;
         kept.history = kept.history || plan.keeps_history;
         if (plan.spare_picture) {
-            fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept);
+            fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px,
+                       target.room_px, kept);
         }
-        fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
+        fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, target.room_px,
+                   kept);
     }
-    resize(moments_, "inverse depth moments", moments_bytes);
+    resize(moments_, "inverse depth moments", moments_bytes, moments_used);
     if (plan.keeps_history && scene_->isInPages()) { (void)changedRects(); }
     const auto at_once = static_cast<std::uint64_t>(std::max(plan.at_once, plan.at_once_ahead));
     resize(lists_.tile_ranges, "tile ranges",

@@ -28,6 +28,8 @@ public:
 
     // Lists hold splats of `scene` from now on.
     void show(const GpuScene& scene);
+    // Another one with as many splats.
+    void goOnWith(const GpuScene& scene) { scene_ = &scene; }
     // Resets this, as if no frame had been drawn yet.
     void forgetFrames() { first_frame_ = true; }
     [[nodiscard]] bool isFirstFrame() const { return first_frame_; }
@@ -92,11 +94,13 @@ public:
     void recordShown(Commands& commands);
 
 private:
-    void resize(Buffer& buffer, const char* name, std::uint64_t bytes);
+    // Makes this many bytes, if it has not, and uses some of them; all if `used` is absent.
+    void resize(Buffer& buffer, const char* name, std::uint64_t bytes,
+                std::optional<std::uint64_t> used = {});
     void growLists(const FrameCapacity& capacity);
     // Colours of both eyes lie side by side where lists are in both.
     void joinColours(const FramePlan& plan);
-    void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
+    void fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 room_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
     // The capacity of VisibleBuffers for a list of so many, in this frame and the next.
     [[nodiscard]] std::uint32_t roomForSplats(const FramePlan& plan, std::uint32_t splats) const;

@@ -39,7 +39,9 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
                      .keep_classes = settings.keep_classes,
                      .center_rois = settings.stereo.center_rois,
                      .half_periphery = hasCoarseTiles(settings, eyes.size())};
-    for (std::size_t e = 0; e < eyes.size(); ++e) { shape.sizes_px[e] = eyes[e].size_px; }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        shape.rooms_px[e] = glm::max(settings.most_px, eyes[e].size_px);
+    }
     return shape;
 }
 

@@ -26,11 +26,11 @@ void keepForWarp(Kept& source, const Warp& warp) {
 // tiles they may not.
 bool canRenderAtOnce(const FramePlan& plan, const FrameSettings& settings, std::uint32_t splats) {
     const TargetPlan &left = plan.targets[0], &right = plan.targets[1];
-    const glm::uvec2 tiles = tilesOf(left.eye.size_px);
+    const glm::uvec2 tiles = tilesOf(left.room_px);
     return plan.shares_order && !plan.keeps_history && !left.coarse &&
-           left.eye.size_px == right.eye.size_px && left.kept.cut == right.kept.cut &&
-           (left.tiles_hidden > 0) == (right.tiles_hidden > 0) && !settings.keep_moments &&
-           PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
+           left.eye.size_px == right.eye.size_px && left.room_px == right.room_px &&
+           left.kept.cut == right.kept.cut && (left.tiles_hidden > 0) == (right.tiles_hidden > 0) &&
+           !settings.keep_moments && PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
 }
 
 }  // namespace
@@ -84,8 +84,8 @@ void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan lis
 }
 
 // Both eyes from their histories; the tiles that are rendered again are chosen before anything is culled.
-void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes,
-                  const Histories& histories, const ListPlan& list) {
+void planTemporal(FramePlan& plan, const FrameSettings& settings, const Histories& histories,
+                  const ListPlan& list) {
     const std::array order{plan.dominant, 1 - plan.dominant};
     int picture = histories.spare;
     for (const int e : order) {
@@ -93,9 +93,9 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         TargetPlan& target = plan.targets[eye];
         makeFromHistory(target, *histories.of_eyes[eye], settings, eye);
         target.picture = picture;
-        // Free once this target is made; another size needs memory of its own, since this is still being
+        // Free once this target is made; a larger one needs memory of its own, since this is still being
         // read.
-        const bool fits = target.history->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
+        const bool fits = target.history->room_px == plan.targets[static_cast<std::size_t>(order[1])].room_px;
         picture = fits ? target.history->picture : fourthPicture(histories);
     }
     for (const int e : order) { plan.steps.push_back({Step::Kind::kHistory, e}); }
@@ -157,7 +157,7 @@ Histories historiesAfter(const FramePlan& plan, const Histories& before) {
     Histories after = before;
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const TargetPlan& target = plan.targets[e];
-        if (target.kept.history) { after.of_eyes[e] = History{target.eye, target.picture}; }
+        if (target.kept.history) { after.of_eyes[e] = History{target.eye, target.picture, target.room_px}; }
     }
     // A picture that was a history is free, once this frame has read it.
     const auto isFree = [&](int picture) {
@@ -207,6 +207,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         const bool is_first = e == first;
         plan.targets.push_back(
             {.eye = eyes[e],
+             .room_px = glm::max(settings.most_px, eyes[e].size_px),
              .role = one_eye    ? Role::kNone
                      : is_first ? Role::kDominant
                                 : Role::kAffiliated,
@@ -248,7 +249,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         plan.at_once_ahead = settings.mode == Mode::kTemporal ? 2 : 1;
     }
     if (mode == Mode::kTemporal) {
-        planTemporal(plan, settings, eyes, histories, both);
+        planTemporal(plan, settings, histories, both);
         return plan;
     }
 

@@ -38,7 +38,8 @@ struct Warp {
 // The last picture of an eye, from which later ones are made.
 struct History {
     Eye eye;
-    int picture = 0;  // of the room's
+    int picture = 0;           // of the room's
+    glm::uvec2 room_px{0, 0};  // that this has memory for
 };
 // By eye; the room's picture to be made next, which no frame in flight reads; and the eye to be rendered in
 // full next (kAlternate).
@@ -51,6 +52,7 @@ struct Histories {
 // A picture that the frame makes.
 struct TargetPlan {
     Eye eye;
+    glm::uvec2 room_px{0, 0};  // its pictures have memory for this size
     Role role = Role::kNone;
     int list = 0;  // of visible splats
     std::uint32_t tiles_hidden = 0;

@@ -10,6 +10,12 @@
 namespace binosplat {
 namespace {
 
+// Which the room's buffers need not have any more.
+std::uint32_t tilesShownOf(const TargetPlan& target) {
+    const glm::uvec2 tiles = tilesOf(target.eye.size_px);
+    return tiles.x * tiles.y - target.tiles_hidden;
+}
+
 void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
     const TargetPlan& target = frame.plan.targets[index];
     const TargetPlan& source = frame.plan.targets[static_cast<std::size_t>(target.warp->source)];
@@ -47,7 +53,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
                      .size_px = target.eye.size_px,
                      .counters = warp,
                      .visible = frame.state.visible[0].count});
-    const std::uint32_t shown = buffers.tileCount() - target.tiles_hidden;
+    const std::uint32_t shown = tilesShownOf(target);
     counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(state.chosen_tiles.count) / shown : 0.0;
     if (warp.picture_cost > 0) {
@@ -76,7 +82,7 @@ void countHistory(const FrameFacts& frame, FrameResult& result) {
         expected += state.warp_counters.expected_squares;
         found += state.warp_counters.found_squares;
         wider += state.warp_counters.wider_squares;
-        shown += buffers.tileCount() - frame.plan.targets[t].tiles_hidden;
+        shown += tilesShownOf(frame.plan.targets[t]);
     }
     counters.tiles_shown = shown;
     const double all_steps = static_cast<double>(gpu::kSquareSteps * 3 * gpu::kTileSize * gpu::kTileSize) *

@@ -68,6 +68,9 @@ struct FrameSettings {
     // kTemporal: frames also measure what half of the resolution would lose, taking turns with one part of
     // their tiles each: this is the turn. If it is the number of parts, or more, they do not.
     std::uint32_t measured_part = gpu::kMeasuredParts;
+    // renderAhead: memory is made for pictures of this size, and those of frames up to it use a part of it,
+    // so that the size may change without a wait. 0: each size has memory of its own.
+    glm::uvec2 most_px{0, 0};
     std::uint64_t mark = 0;  // the caller's own; returned with the result
 };
 

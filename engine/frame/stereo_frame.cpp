@@ -5,6 +5,7 @@
 #include "engine/frame/report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace binosplat {
@@ -56,6 +57,44 @@ void StereoFrame::show(const GpuScene& scene) {
     histories_ = {};
     changes_known_ = scene.changesRecorded();
     cut_short_ = done_again_ = 0;
+}
+
+void StereoFrame::goOnWith(const GpuScene& scene) {
+    scene_ = &scene;
+    room_.goOnWith(scene);
+    histories_ = {};
+    changes_known_ = scene.changesRecorded();
+    cut_short_ = done_again_ = 0;
+}
+
+void StereoFrame::reserveForChanges(std::uint64_t bytes) {
+    for (Flight& flight : flights_) { flight.commands.reserveStaging(bytes); }
+}
+
+bool StereoFrame::makeRoomFor(glm::uvec2 size_px) {
+    // Nothing is known, or the device lacks the memory.
+    if (plan_.targets.empty() || room_.isFirstFrame() || FrameRoom::isCutShort(state_) ||
+        !room_.growsBeside() || !room_.fitsAhead()) {
+        return true;
+    }
+    FramePlan plan = plan_;
+    FrameState state = stateAhead();
+    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
+        TargetPlan& target = plan.targets[t];
+        const double times = std::max(1.0 * size_px.x / target.eye.size_px.x, 1.0);
+        target.eye.size_px = size_px;
+        // What a splat touches, one tile and more to each side, as if all were alike.
+        std::uint32_t& needed = state.targets[t].pairs.needed;
+        const double visible =
+            1.0 * plan.at_once * state.visible[static_cast<std::size_t>(target.list)].needed;
+        const double across = std::sqrt(std::max(needed / std::max(visible, 1.0), 1.0)),
+                     across_then = 1.0 + times * (across - 1.0);
+        const double more = across_then * across_then / (across * across);
+        needed = static_cast<std::uint32_t>(std::min(more * needed, 1.0 * gpu::kMaxItems));
+    }
+    if (room_.hasRoom(plan, state, kRoomAhead)) { return true; }
+    room_.growBeside(plan, state);
+    return false;
 }
 
 void StereoFrame::rebuildKernels() {
@@ -299,6 +338,11 @@ StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes,
     if (shapeOf(eyes, settings) != shape_) { return Likeness::kOther; }
     bool jumps = binosplat::jumps(eyes_, eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
+        // Another size, for which there is memory.
+        if (plan_.targets[e].eye.size_px != eyes[e].size_px) {
+            jumps = true;
+            continue;
+        }
         const double before = plan_.targets[e].tiles_hidden, now = countHidden(settings.hidden_tiles[e]);
         if ((before > 0) != (now > 0)) { return Likeness::kOther; }
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);

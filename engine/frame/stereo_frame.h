@@ -5,6 +5,7 @@
 #include "engine/frame/record.h"
 #include "engine/picture/image.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -36,6 +37,16 @@ public:
     // scene.
     void show(const GpuScene& scene);
 
+    // The same without a wait, for a scene that has as many splats, in the same memory (GpuScene::asItIs);
+    // between frames.
+    void goOnWith(const GpuScene& scene);
+    // Memory from which the scene's changes are copied: as much as frames have needed, and makes it before
+    // they do, while none is in flight.
+    [[nodiscard]] std::uint64_t bytesForChanges() const {
+        return std::max(flights_[0].commands.stagingBytes(), flights_[1].commands.stagingBytes());
+    }
+    void reserveForChanges(std::uint64_t bytes);
+
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. If a buffer is too small for what the eyes
     // see, it grows and the frame is rendered once more, so the result never comes from a truncated list.
     // Throws Error if the device does not have enough memory. `append` records what is done with the
@@ -50,12 +61,16 @@ public:
     // first one, one with another size or mode, and one after a jump of the eyes. If a list is too short in a
     // frame that is waited for, the frame is rendered once more before it is shown ("frames_done_again").
     // What it needs is counted or, if that is not possible, guessed, so even then it is seldom cut short. If
-    // the settings say so (FrameSettings::waits_for_lists), only the first frame and those with another size
-    // or mode are waited for: longer lists are made on a thread, and a later frame uses them. `signals`, if
-    // given, is signalled when the frame is done.
+    // the settings say so (FrameSettings::waits_for_lists), only the first frame and those with another mode,
+    // or another size without memory for it, are waited for: longer lists are made on a thread, and a later
+    // frame uses them. `signals`, if given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {},
                                            vk::Semaphore signals = {});
+    // Before the first frame of another size for which there is memory (FrameSettings::most_px): true if
+    // lists probably have capacity for it; otherwise longer ones are being made beside the frames, and later
+    // calls say when they are there. Does not wait.
+    [[nodiscard]] bool makeRoomFor(glm::uvec2 size_px);
     // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the
     // previous one, as renderAhead does.
     void passOver();

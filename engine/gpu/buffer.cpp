@@ -39,7 +39,10 @@ std::uint64_t addressOf(const Context& context, const vk::raii::Buffer& buffer) 
 
 Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t bytes, const Buffer& whole,
                std::uint64_t offset_bytes)
-    : buffer_(makeBuffer(context, bytes, MemoryKind::kDevice)), context_(&context), bytes_(bytes) {
+    : buffer_(makeBuffer(context, bytes, MemoryKind::kDevice)),
+      context_(&context),
+      bytes_(bytes),
+      made_bytes_(bytes) {
     buffer_.bindMemory(*whole.memory_, offset_bytes);
     context.name(buffer_, name);
     address_ = addressOf(context, buffer_);
@@ -87,7 +90,7 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     } catch (const vk::OutOfHostMemoryError&) { refuse(what + ", which is more than it has free"); }
     context.name(buffer_, name);
     context_ = &context;
-    bytes_ = bytes;
+    bytes_ = made_bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {
         address_ = addressOf(context, buffer_);
         MemoryUse& use = context.memoryUse();
@@ -105,6 +108,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     memory_ = std::move(other.memory_);
     context_ = std::exchange(other.context_, nullptr);
     bytes_ = std::exchange(other.bytes_, 0);
+    made_bytes_ = std::exchange(other.made_bytes_, 0);
     counted_bytes_ = std::exchange(other.counted_bytes_, 0);
     address_ = std::exchange(other.address_, 0);
     mapped_ = std::exchange(other.mapped_, nullptr);
@@ -118,7 +122,7 @@ void Buffer::release() {
     context_ = nullptr;
     buffer_ = vk::raii::Buffer(nullptr);
     memory_ = vk::raii::DeviceMemory(nullptr);
-    bytes_ = counted_bytes_ = address_ = 0;
+    bytes_ = made_bytes_ = counted_bytes_ = address_ = 0;
     mapped_ = nullptr;
 }
 

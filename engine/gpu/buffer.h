@@ -33,6 +33,12 @@ public:
     ~Buffer() { release(); }
 
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    // From now on only so many of its bytes count, at most those that it was made with.
+    void use(std::uint64_t bytes) {
+        assert(bytes <= made_bytes_);
+        bytes_ = bytes;
+    }
+    [[nodiscard]] std::uint64_t madeBytes() const { return made_bytes_; }
     [[nodiscard]] vk::Buffer handle() const { return *buffer_; }
     // The address of an array of T that begins `offset_bytes` into the buffer.
     template <typename T>
@@ -52,7 +58,8 @@ private:
     vk::raii::DeviceMemory memory_{nullptr};  // freed after the buffer
     vk::raii::Buffer buffer_{nullptr};
     const Context* context_ = nullptr;
-    std::uint64_t bytes_ = 0, counted_bytes_ = 0, address_ = 0;  // counted_bytes_: see MemoryUse
+    std::uint64_t bytes_ = 0, made_bytes_ = 0, address_ = 0;
+    std::uint64_t counted_bytes_ = 0;  // see MemoryUse
     void* mapped_ = nullptr;
 };
 

@@ -140,14 +140,17 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::span<const vk::Bu
 const Buffer& Commands::staging(std::uint64_t bytes) {
     assert(!staged_ && !under_way_);
     staged_ = true;
-    if (staging_.bytes() < bytes) {
-        staging_ = {};
-        constexpr std::uint64_t kStep = 1 << 20;  // large, so that it seldom grows
-        const std::uint64_t rounded =
-            std::min((bytes + kStep - 1) / kStep * kStep, std::max(bytes, context_.maxAllocationBytes()));
-        staging_ = Buffer(context_, "staging", rounded, MemoryKind::kUpload);
-    }
+    reserveStaging(bytes);
     return staging_;
+}
+
+void Commands::reserveStaging(std::uint64_t bytes) {
+    if (staging_.bytes() >= bytes) { return; }
+    staging_ = {};
+    constexpr std::uint64_t kStep = 1 << 20;  // large, so that it seldom grows
+    const std::uint64_t rounded =
+        std::min((bytes + kStep - 1) / kStep * kStep, std::max(bytes, context_.maxAllocationBytes()));
+    staging_ = Buffer(context_, "staging", rounded, MemoryKind::kUpload);
 }
 
 void Commands::changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from,

@@ -93,6 +93,9 @@ public:
     // until submit, and it exists until the next begin. Once per recording. Throws Error if there is not
     // enough memory.
     [[nodiscard]] const Buffer& staging(std::uint64_t bytes);
+    // That much memory is there already when a recording asks for it.
+    void reserveStaging(std::uint64_t bytes);
+    [[nodiscard]] std::uint64_t stagingBytes() const { return staging_.bytes(); }
 
     // A whole image from tightly packed rows, or in one colour. Its old content is lost; it is left as an
     // attachment.

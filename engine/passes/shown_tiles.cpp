@@ -6,14 +6,21 @@
 
 namespace binosplat {
 
-void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) {
+namespace {
+
+std::size_t wordsOf(glm::uvec2 size_tiles) { return std::size_t{(size_tiles.x + 31) / 32} * size_tiles.y; }
+
+}  // namespace
+
+void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles, glm::uvec2 room_tiles) {
+    room_tiles_ = room_tiles;
     if (std::ranges::equal(hidden, hidden_) && size_tiles == size_tiles_) { return; }
     hidden_.assign(hidden.begin(), hidden.end());
     size_tiles_ = size_tiles;
     words_.clear();
     if (std::ranges::count(hidden_, std::uint8_t{0}) == std::ssize(hidden_)) { return; }
     const std::size_t row_words = (size_tiles.x + 31) / 32;
-    words_.resize(row_words * size_tiles.y, 0);
+    words_.resize(wordsOf(size_tiles), 0);
     for (std::size_t y = 0, tile = 0; y < size_tiles.y; ++y) {
         for (std::size_t x = 0; x < size_tiles.x; ++x, ++tile) {
             if (hidden_[tile] == 0) { words_[y * row_words + x / 32] |= 1u << (x % 32); }
@@ -24,12 +31,14 @@ void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles
 void ShownTiles::record(Commands& commands) {
     turn_ = 1 - turn_;
     Buffer& mask = masks_[turn_];
-    const std::uint64_t bytes = words_.size() * sizeof(gpu::uint);
+    const std::uint64_t bytes = words_.size() * sizeof(gpu::uint),
+                        room = wordsOf(room_tiles_) * sizeof(gpu::uint);
     // Frames before the last one have finished.
     retired_ = {};
-    if (mask.bytes() != bytes) {
-        retired_ = std::exchange(mask, bytes > 0 ? Buffer(context_, "shown tiles", bytes) : Buffer());
+    if (bytes > 0 && mask.madeBytes() != room) {
+        retired_ = std::exchange(mask, Buffer(context_, "shown tiles", room));
     }
+    mask.use(bytes);
     if (bytes > 0) { commands.update(mask, words_.data(), bytes); }
 }
 

@@ -15,24 +15,26 @@ std::uint64_t WarpBuffers::maskWords(glm::uvec2 size_px) {
 }
 
 WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
-    : needs_(needs), longest_shared_row_(mostRowSteps(context) * gpu::kArrivalsStep) {
-    if (needs.size_px.x == 0) { return; }
-    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.size_px) +
+    : needs_(needs),
+      size_px_(needs.room_px),
+      longest_shared_row_(mostRowSteps(context) * gpu::kArrivalsStep) {
+    if (needs.room_px.x == 0) { return; }
+    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.room_px) +
                                 std::max(gpu::kPriceBins, gpu::kDepthBins);
     tiles_ = Buffer(context, "warp tiles", words * sizeof(gpu::uint));
     if (needs.classes) {
         classes_ = Buffer(context, "pixel classes",
-                          std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint));
+                          std::uint64_t{sizeTiles().x} * needs.room_px.y * sizeof(gpu::uint));
     }
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
     if (needs.history) {
         const glm::uvec2 block{gpu::kHistoryColumns, gpu::kHistoryRows},
-            blocks = (needs.size_px + block - 1u) / block;
+            blocks = (needs.room_px + block - 1u) / block;
         history_blocks_ = Buffer(context, "blocks of the history",
                                  std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::HistoryBlock));
     } else if (!sharesRows()) {
         planes_ = Buffer(context, "reprojected pixels",
-                         2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
+                         2 * sizeof(gpu::uint) * std::uint64_t{needs.room_px.x} * needs.room_px.y);
     }
 }
 
@@ -51,8 +53,8 @@ gpu::DeviceAddress<gpu::uint> WarpBuffers::arrivals(const Picture& target) const
 }
 
 gpu::DeviceAddress<gpu::uint> WarpBuffers::moving(const Picture& target) const {
-    const std::uint64_t width = needs_.size_px.x;
-    return sharesRows() ? arrivals(target).at(width) : arrivals(target).at(width * needs_.size_px.y);
+    const std::uint64_t width = size_px_.x;
+    return sharesRows() ? arrivals(target).at(width) : arrivals(target).at(width * size_px_.y);
 }
 
 }  // namespace binosplat

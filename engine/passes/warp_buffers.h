@@ -10,7 +10,7 @@ std::uint32_t mostRowSteps(const Context& context);
 
 // A frame's requirements.
 struct WarpBufferNeeds {
-    glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
+    glm::uvec2 room_px{0, 0};  // memory for pictures of both eyes of this size; 0: no mode that reprojects
     bool classes = false;      // of the target's pixels
     bool half_floats = false;  // what pictures consist of
     bool history = false;      // the eye's own history is the source
@@ -27,8 +27,10 @@ public:
     WarpBuffers(const Context& context, const WarpBufferNeeds& needs);
 
     [[nodiscard]] const WarpBufferNeeds& needs() const { return needs_; }
-    [[nodiscard]] glm::uvec2 sizePx() const { return needs_.size_px; }
-    [[nodiscard]] glm::uvec2 sizeTiles() const { return tilesOf(needs_.size_px); }
+    // From now on pictures have this size, at most room_px, which is their size at first.
+    void use(glm::uvec2 size_px) { size_px_ = size_px; }
+    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    [[nodiscard]] glm::uvec2 sizeTiles() const { return tilesOf(size_px_); }
     [[nodiscard]] std::uint32_t tileCount() const { return sizeTiles().x * sizeTiles().y; }
 
     [[nodiscard]] const Buffer& tiles() const { return tiles_; }
@@ -47,9 +49,7 @@ public:
     // Tells the target where these are.
     void tell(gpu::TargetState& target) const;
     // The price list, or the counts of depths.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const {
-        return tileMask().at(maskWords(needs_.size_px));
-    }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const { return tileMask().at(maskWords(size_px_)); }
     [[nodiscard]] static std::uint64_t tileKindsOffset() { return 0; }
     // Words of a mask of tiles: one bit each, with each row beginning a new word.
     static std::uint64_t maskWords(glm::uvec2 size_px);
@@ -64,15 +64,15 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pixelClasses() const { return classes_.address<gpu::uint>(); }
 
     // Moving pixels and arrivals: where the first rows begin, and the number of words from a row to the next.
-    [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= longest_shared_row_; }
+    [[nodiscard]] bool sharesRows() const { return size_px_.x <= longest_shared_row_; }
     [[nodiscard]] gpu::uint rowWords() const {
-        return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x;
+        return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * size_px_.x;
     }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const Picture& target) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const Picture& target) const;
     // How many kArrivalsStep a row takes in shared memory (see resample); 0: rows are not kept there.
     [[nodiscard]] std::uint32_t rowSteps() const {
-        return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
+        return sharesRows() ? (size_px_.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
     }
 
     [[nodiscard]] std::uint64_t bytes() const {
@@ -85,6 +85,7 @@ private:
     }
 
     WarpBufferNeeds needs_;
+    glm::uvec2 size_px_{0, 0};
     std::uint32_t longest_shared_row_ = 0;
     Buffer tiles_, classes_, boxes_, planes_, history_blocks_;
 };

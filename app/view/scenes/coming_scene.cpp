@@ -1,5 +1,5 @@
-// From a scene that is loaded to one that is shown, and from one that was shown to memory that is free,
-// without a wait.
+// From a scene that is loaded to one that is shown, from one that was shown to memory that is free, and from
+// one method to another, without a wait.
 #include "app/view/scenes/shown_scene.h"
 #include "engine/gpu/device_error.h"
 
@@ -43,6 +43,79 @@ SceneFrames ShownScene::takeFrames(Coming& coming) {
         if (error.kind() != DeviceError::Kind::kMemory) { throw; }
         return {};
     }
+}
+
+void ShownScene::keepDrawn(const ViewSettings& drawn) {
+    if (!ahead_ || !drawing().ready) { return; }
+    std::optional<FramesAhead>& met = drawing().met;
+    if (met && met->stereo == drawn.stereo && met->tint == drawn.tint) { return; }
+    met = *drawing().ready;
+    met->stereo = drawn.stereo;
+    met->tint = drawn.tint;
+}
+
+std::optional<Similarity> ShownScene::toRemake() const {
+    if (!ahead_ || options_.load_first) { return std::nullopt; }
+    Similarity there;
+    if (lacksMethod(drawing())) { return there; }
+    const Held& rests = draws_other_ ? shown_ : other_;
+    if (!lacksMethod(rests)) { return std::nullopt; }
+    there.position = (draws_other_ ? -1.0 : 1.0) * otherFromShown();
+    return there;
+}
+
+void ShownScene::remakeFrames(FramesWanted wanted) {
+    Held& held = lacksMethod(drawing()) ? drawing() : resting();
+    held.remade_for = ahead_;
+    for (const StereoFrame* const frame : {held.frames.frame.get(), held.frames.insets.get()}) {
+        const std::uint64_t bytes = frame != nullptr ? frame->bytesForChanges() : 0;
+        wanted.bytes_for_changes = std::max(wanted.bytes_for_changes, bytes);
+    }
+    held.remade = std::async(
+        std::launch::async, [this, scene = std::make_unique<GpuScene>(held.scene->gpu_scene.asItIs()),
+                             wanted = std::move(wanted)]() mutable {
+            RemadeFrames remade{std::move(scene), {}};
+            remade.frames = binosplat::makeFrames(context_, kernels_, *remade.scene, wanted);
+            return remade;
+        });
+}
+
+void ShownScene::takeRemade(Held& held) {
+    if (!held.remade.valid() || held.remade.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+        return;
+    }
+    try {
+        RemadeFrames remade = held.remade.get();
+        const GpuScene& scene = held.scene->gpu_scene;
+        const bool fits = remade.scene->splatCount() == scene.splatCount();
+        if (!fits || !held.remade_for->hasMethodOf(*ahead_)) {  // another method was chosen meanwhile
+            freeing_.push_back(std::async(std::launch::async, [gone = std::move(remade)]() mutable {
+                const RemadeFrames here = std::move(gone);
+            }));
+            return;
+        }
+        for (StereoFrame* const frame : {remade.frames.frame.get(), remade.frames.insets.get()}) {
+            if (frame != nullptr) { frame->goOnWith(scene); }
+        }
+        Held before;
+        before.frames = std::exchange(held.frames, std::move(remade.frames));
+        letGo(before);
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
+        // Its frames are made as they are drawn, which says what is wrong.
+    } catch (const Error&) {}
+    held.met = held.remade_for;
+}
+
+bool ShownScene::makeRoomFor(glm::uvec2 size_px, glm::uvec2 inset_px) {
+    bool has_room = true;
+    for (const Held* const held : {&shown_, &other_}) {
+        for (const auto& [frame, its_px] :
+             {std::pair(held->frames.frame.get(), size_px), std::pair(held->frames.insets.get(), inset_px)}) {
+            // Each begins what it lacks.
+            if (frame != nullptr && !frame->makeRoomFor(its_px)) { has_room = false; }
+        }
+    }
+    return has_room;
 }
 
 void ShownScene::letGo(Held& held) {

@@ -46,6 +46,7 @@ std::string ShownScene::takeOther() {
         }
         other_.scene = std::move(taken);
         if (ahead_) { haveReady(other_, coming.loader->madeFor()); }
+        other_.met = other_.ready;
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         dropOther();
         return error.what();
@@ -67,6 +68,8 @@ std::string ShownScene::goOnAlone(const Error& error) {
 void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame,
                            std::span<const Eye> inset_eyes, const FrameSettings& inset) {
     if (!other_.scene || draws_other_) { return; }
+    // See remakeFrames.
+    if (!options_.load_first && other_.met && shown_.met && !other_.met->hasMethodOf(*shown_.met)) { return; }
     const glm::uvec3 shape = shapeOfFrames(eyes, frame);
     if (std::exchange(other_.frames.shape, shape) == shape) { return; }
     const auto meet = [&](StereoFrame& other, std::span<const Eye> seen, const FrameSettings& settings) {

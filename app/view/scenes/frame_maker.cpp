@@ -4,7 +4,7 @@
 namespace binosplat {
 
 glm::uvec3 shapeOfFrames(std::span<const Eye> eyes, const FrameSettings& settings) {
-    return {eyes.front().size_px, settings.hidden_tiles[0].size()};
+    return {glm::max(settings.most_px, eyes.front().size_px), settings.hidden_tiles[0].empty() ? 0 : 1};
 }
 
 SceneFrames makeFrames(const Context& context, PassKernels& kernels, const GpuScene& scene,
@@ -16,6 +16,7 @@ SceneFrames makeFrames(const Context& context, PassKernels& kernels, const GpuSc
         for (int turn = 0; turn < 2; ++turn) { (void)frame->renderAhead(eyes, settings); }
         (void)frame->finish();
         frame->forgetHistory();
+        frame->reserveForChanges(wanted.bytes_for_changes);
         return frame;
     };
     FrameSettings settings = wanted.settings;

@@ -13,7 +13,7 @@ namespace binosplat {
 namespace {
 
 // The governor's shares of the resolution, in each direction; if axes stay, pictures are wider.
-constexpr std::array kShares{1.25, 1.0, 0.8, 0.6, 0.4};
+constexpr std::array kShares{1.25, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4};
 
 std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     Eye middle{};
@@ -26,7 +26,8 @@ std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     return eyes;
 }
 
-// One of the widths with the same steps is enough; see resample.
+// Of the widths with the same steps (see resample) two are enough: one that history blocks fill, one that
+// they do not.
 std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     std::vector<std::uint32_t> widths, steps;
     for (const double share : kShares) {
@@ -35,7 +36,9 @@ std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
             std::min((width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep, gpu::kMostRowSteps + 1);
         if (std::ranges::find(steps, its) != steps.end()) { continue; }
         steps.push_back(its);
-        widths.push_back(width);
+        const std::uint32_t filled =
+            (width + gpu::kHistoryColumns - 1) / gpu::kHistoryColumns * gpu::kHistoryColumns;
+        widths.insert(widths.end(), {filled, filled - 1});
     }
     return widths;
 }

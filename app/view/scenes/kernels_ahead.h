@@ -22,6 +22,11 @@ struct FramesAhead {
 
     // True if the frames of both need the same kernels.
     [[nodiscard]] bool isLike(const FramesAhead& other) const;
+    // True if they do apart from their sizes.
+    [[nodiscard]] bool hasMethodOf(FramesAhead other) const {
+        other.size_px = size_px;
+        return isLike(other);
+    }
 };
 
 // Makes `kernels` of whatever frames of `scene` may come without a click: those of the chosen method, with

@@ -30,7 +30,7 @@ std::optional<double> ShownScene::loading() const {
 }
 
 bool ShownScene::isLoading() const {
-    return next_.loader || other_next_.loader || maker_ ||
+    return next_.loader || other_next_.loader || isMakingMethod() ||
            std::ranges::any_of(given_up_,
                                [](const Coming& coming) { return !coming.isLoaded() || coming.isMaking(); });
 }
@@ -106,6 +106,7 @@ void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool ti
         }
     }
     if (!shown_.scene || options_.load_first) { return; }
+    for (Held* const held : {&shown_, &other_}) { takeRemade(*held); }
     if (maker_ && maker_->isDone()) {
         if (!maker_->hasGivenUp()) { haveReady(*made_for_, maker_->ahead()); }
         maker_.reset();
@@ -129,16 +130,16 @@ void ShownScene::haveReady(Held& held, const FramesAhead& ahead) {
 }
 
 ViewSettings ShownScene::drawable(ViewSettings settings) const {
-    const std::optional<FramesAhead>& ready = drawing().ready;
-    if (!drawn() || !ready || options_.load_first) { return settings; }
-    FramesAhead wanted = *ready;  // another size does not need new kernels
+    const std::optional<FramesAhead>& met = drawing().met;
+    if (!drawn() || !met || options_.load_first) { return settings; }
+    FramesAhead wanted = *met;  // another size does not need new kernels
     wanted.stereo = settings.stereo;
     wanted.tint = settings.tint;
-    if (!wanted.isLike(*ready)) {
+    if (!wanted.isLike(*met)) {
         const Axes axes = settings.stereo.axes;  // which do not need other kernels
-        settings.stereo = ready->stereo;
+        settings.stereo = met->stereo;
         settings.stereo.axes = axes;
-        settings.tint = ready->tint;
+        settings.tint = met->tint;
     }
     return settings;
 }
@@ -150,6 +151,7 @@ std::string ShownScene::take(ViewState& state) {
         maker_.reset();
         SceneFrames frames = takeFrames(coming);
         dropOther();
+        if (frames.frame == nullptr) { shown_.remade = {}; }  // it reads the scene that goes at once
         if (shown_.scene) { left_[shown_.scene->place] = state.sceneFromRoom(); }
         if (frames.frame) {
             letGo(shown_);
@@ -159,6 +161,7 @@ std::string ShownScene::take(ViewState& state) {
         }
         shown_.scene = std::move(taken);
         if (ahead_) { haveReady(shown_, coming.loader->madeFor()); }
+        shown_.met = shown_.ready;
     } catch (const vk::DeviceLostError&) { throw; } catch (const DeviceError& error) {
         const bool lacks_memory = error.kind() == DeviceError::Kind::kMemory;
         return lacks_memory && shown_.scene ? makeWay(state) : goOnWithout(error.what());
@@ -220,6 +223,7 @@ std::string ShownScene::makeWay(const ViewState& state) {
     maker_.reset();
     dropOther();
     freeGone();
+    shown_.remade = {};
     shown_.frames.insets.reset();
     if (!nothing_) { nothing_ = std::make_unique<GpuScene>(context_, Scene{}); }
     shown_.frames.frame->show(*nothing_);

@@ -69,15 +69,27 @@ public:
     // Ready to be taken without a wait.
     [[nodiscard]] bool isNextMet() const { return isNextReady() && next_.isMet(); }
     [[nodiscard]] bool isOtherMet() const { return isOtherReady() && other_next_.isMet(); }
-    // True while kernels for drawable() are being made.
-    [[nodiscard]] bool isMakingKernels() const { return maker_ != nullptr; }
+    // True while kernels or frames for drawable() are being made.
+    [[nodiscard]] bool isMakingMethod() const {
+        return maker_ != nullptr || shown_.remade.valid() || other_.remade.valid();
+    }
 
     // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they
-    // are made beside the frames, unless the options have the scene loaded first, so that runs are
-    // repeatable.
+    // are made beside the frames, and then remakeFrames() is due, unless the options have the scene loaded
+    // first, so that runs are repeatable. Before each frame.
     void expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint);
-    // `settings`, with the method replaced by one that can be drawn until its kernels are ready.
+    // `settings`, with the method replaced by the one that is drawn until kernels and frames are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
+    // After each frame's preparation: its frames have memory for these settings, or no pictures at all.
+    void keepDrawn(const ViewSettings& drawn);
+    void forgetDrawn() { drawing().met.reset(); }
+    // Where the eyes of the drawn scene are in one whose frames are of another method than is expected; empty
+    // if there is none.
+    [[nodiscard]] std::optional<Similarity> toRemake() const;
+    // Makes frames of that one on a thread; a later expect() exchanges them for those that it has.
+    void remakeFrames(FramesWanted wanted);
+    // True if lists have capacity for frames of this size, see StereoFrame.
+    [[nodiscard]] bool makeRoomFor(glm::uvec2 size_px, glm::uvec2 inset_px);
 
     // Begins to load another scene, and then `compared`, if given, to compare with it; the current one stays
     // until that is loaded. If the next scene is to be compared with the current one, it does that instead.
@@ -133,6 +145,9 @@ private:
         std::unique_ptr<LoadedScene> scene;
         SceneFrames frames;                // before the scene goes, they wait for the device
         std::optional<FramesAhead> ready;  // the frames that there are kernels for
+        std::optional<FramesAhead> met;    // and those that there is memory for; absent: not known
+        std::optional<FramesAhead> remade_for;
+        std::future<RemadeFrames> remade;  // last: its thread reads the scene
     };
     // A scene that loads, and then its frames.
     struct Coming {
@@ -176,6 +191,12 @@ private:
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);
     void haveReady(Held& held, const FramesAhead& ahead);
+    [[nodiscard]] bool lacksMethod(const Held& held) const {
+        return held.scene && !held.remade.valid() && held.met && held.ready->hasMethodOf(*ahead_) &&
+               !held.met->hasMethodOf(*ahead_);
+    }
+    // If there are new ones: frames of the scene go on with them.
+    void takeRemade(Held& held);
     // Eyes of the drawn scene, as the other one counts.
     [[nodiscard]] std::vector<Eye> seenFromResting(std::span<const Eye> eyes) const;
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.

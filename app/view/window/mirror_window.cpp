@@ -90,15 +90,16 @@ WindowInput MirrorWindow::poll() {
     return input;
 }
 
-void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
-    // The size differs from the previous frame's, which is finished by now.
-    if (eye_px_ != size_px) {
-        eye_px_ = size_px;
+void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, glm::uvec2 most_px,
+                           vk::Format format) {
+    eye_px_ = size_px;
+    if (eye_most_px_ != most_px) {
+        eye_most_px_ = most_px;
         try {
             eye_.reset();
             const vk::Format raw =
                 texelLayoutOf(format).blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
-            eye_.emplace(context_, "the window's eye", size_px, raw,
+            eye_.emplace(context_, "the window's eye", most_px, raw,
                          Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
         } catch (const vk::OutOfDeviceMemoryError&) {
         } catch (const vk::OutOfHostMemoryError&) {

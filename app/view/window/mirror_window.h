@@ -28,8 +28,10 @@ public:
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
     void acquire() { pictures_->acquire(); }
-    // Between begin and submit: keeps an eye's presented pixels, of an image of `format`.
-    void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
+    // Between begin and submit: keeps an eye's presented pixels, of an image of `format`. The size may be any
+    // up to `most_px`; while that changes, no frame is in flight.
+    void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, glm::uvec2 most_px,
+                 vk::Format format);
     // Between begin and submit, once the canvas is drawn; may be repeated.
     void record(Commands& commands);
     // The semaphore that the submission signals for show(); null if no picture was acquired.
@@ -43,7 +45,7 @@ private:
     EventWindow& events_;
     std::unique_ptr<WindowPictures> pictures_;
     std::optional<OwnImage> eye_;
-    glm::uvec2 eye_px_{0, 0};
+    glm::uvec2 eye_px_{0, 0}, eye_most_px_{0, 0};
     glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
     bool was_down_ = false;
 };

@@ -27,6 +27,9 @@ const std::string kWatched =
     "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
     "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
 
+// In which kernels and frames of another method are made, on a thread.
+constexpr double kMethodSeconds = 5.0;
+
 // What frames still create or wait for between two times, until it is fixed.
 struct Known {
     double begin_s, end_s;
@@ -292,6 +295,58 @@ TEST_CASE("while there is no scene frames wait for nothing, nor does the first t
     }
 }
 #endif
+
+TEST_CASE("the governor's steps, to other resolutions and back, wait for nothing") {
+    // From frame 110 on they take too long, from 130 on three periods, and from 200 on a third of one.
+    const std::string script =
+        "rate 90\nsize 100 100\nframes none\nvisibility-mask on\nhead 0 position 0 1.6 0\n"
+        "head 1 position 0 1.6 0\nhead 6 position 0.4 1.6 0.2 turn 40 0\nat 6 exit\n";
+    for (const std::string mode : {"temporal", "predicted", "shared", "two-pass", "alternate", "mono"}) {
+        for (const std::string axes : {"view", "stay"}) {
+            if (axes == "stay" && mode != "temporal") { continue; }
+            CAPTURE(mode);
+            CAPTURE(axes);
+            const Workplace work;
+            const ViewRun run =
+                runView(work, "steps", script,
+                        fmt::format("builtin:slanted-wall --load-first --hide-hands --axes {} --mode {}{}",
+                                    axes, mode, withConfig(work, "[view]\nquality = \"fast\"\n")),
+                        kWatched + " BINOSPLAT_FAULT_LOAD=0:9.7,110:14,130:33,200:4");
+            INFO(run.outcome.output << run.outcome.errors);
+            CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+            CHECK_FALSE(run.says("frames shown incomplete"));
+            int downs = 0, ups = 0;
+            for (std::size_t frame = 91; frame < run.frames.size(); ++frame) {
+                const int before = run.width(frame - 1), now = run.width(frame);
+                downs += now < before ? 1 : 0;
+                ups += now > before ? 1 : 0;
+            }
+            CHECK(these(downs > 0, ups > 0) == these(true, true));
+            checkQuiet(work, 90);
+        }
+    }
+}
+
+TEST_CASE("another method is drawn once its frames are made, and no frame waits for them") {
+    const Workplace work;
+    Acts acts("rate 45\nsize 64 64\nframes none\nvisibility-mask on\n");
+    acts.wait(kMethodSeconds);
+    const std::vector<std::string> methods{"temporal", "predicted", "two-pass",
+                                           "mono",     "alternate", "shared"};
+    for (const std::string& method : methods) {
+        acts.point(onMethod(method)).wait(0.25).press("right trigger", 0.3).wait(kMethodSeconds);
+    }
+    const ViewRun run =
+        runView(work, "methods", acts.script(),
+                "builtin:slanted-wall --hide-hands --mode shared" + withConfig(work, kMethodPage),
+                kWatched + " SIMULATED_OPENXR_CLOCK=real");
+    INFO(run.outcome.output << run.outcome.errors);
+    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+    // On a busy machine some may be chosen before the one before is ready.
+    CHECK(run.lines(" is ready").size() >= methods.size() / 2);
+    CHECK_FALSE(run.says("frames shown incomplete"));
+    checkQuiet(work);
+}
 
 TEST_CASE("new letters come without a wait") {
     const Workplace work;

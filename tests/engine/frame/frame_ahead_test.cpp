@@ -59,23 +59,87 @@ FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const Fr
 
 TEST_CASE_FIXTURE(Atelier,
                   "a frame that is not waited for is the one that is, to the byte, in every mode, also after "
-                  "another size") {
+                  "another size, in memory of its own or in a part of the largest one's") {
+    const std::array<glm::uvec2, 5> sizes_px{{{96, 96}, {64, 80}, {96, 96}, {81, 50}, {90, 96}}};
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted,
                             Mode::kAlternate, Mode::kTemporal}) {
-        CAPTURE(nameOf(mode));
-        KeptFrame ahead(context(), scene);
-        const auto waited = StereoFrame::beside(ahead);
-        FrameSettings settings = makeSettings(mode);
-        settings.keep_history = hasHistory(mode);
-        for (int step = 0; step < (settings.keep_history ? 12 : 4); ++step) {
-            const auto eyes =
-                eyesAt(ofSize(view.eye, step / 4 == 1 ? glm::uvec2(64, 80) : glm::uvec2(96, 96)), step);
-            ahead.renderAhead(eyes, settings);
-            // `predicted` uses the frame before
-            if (settings.keep_history || step >= 2) { waited->render(eyes, settings); }
-            if (step % 4 == 3) { CHECK(shownBy(ahead) == shownBy(*waited)); }
+        for (const glm::uvec2 most_px : {glm::uvec2(0), glm::uvec2(96)}) {
+            CAPTURE(nameOf(mode));
+            CAPTURE(most_px.x);
+            KeptFrame ahead(context(), scene);
+            const auto waited = StereoFrame::beside(ahead);
+            FrameSettings settings = makeSettings(mode);
+            settings.keep_history = hasHistory(mode);
+            const int sizes = settings.keep_history || most_px.x > 0 ? 5 : 1;
+            for (int step = 0; step < 4 * sizes; ++step) {
+                const glm::uvec2 size_px = sizes_px.at(static_cast<std::size_t>(step / 4));
+                const auto eyes = eyesAt(ofSize(view.eye, size_px), step);
+                std::vector<std::uint8_t> hidden(std::size_t{tilesOf(size_px).x} * tilesOf(size_px).y, 0);
+                hidden.front() = 1;
+                if (step / 4 >= 2) { settings.hidden_tiles = {hidden, hidden}; }
+                settings.most_px = most_px;
+                ahead.renderAhead(eyes, settings);
+                settings.most_px = {};
+                // `predicted` uses the frame before
+                if (settings.keep_history || step % 4 >= 2) { waited->render(eyes, settings); }
+                if (step % 4 == 3) { CHECK(shownBy(ahead) == shownBy(*waited)); }
+            }
         }
     }
+}
+
+TEST_CASE_FIXTURE(
+    Atelier,
+    "where there is memory for the largest size, frames of another one wait for nothing and take "
+    "no more; to larger ones lists come first") {
+    const glm::uvec2 most_px(96, 96), least_px(32, 32);
+    const auto eyesOf = [&](glm::uvec2 size_px) { return eyesAt(ofSize(view.eye, size_px), 0); };
+    for (const Mode mode :
+         {Mode::kTwoPass, Mode::kShared, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
+        CAPTURE(nameOf(mode));
+        KeptFrame frame(context(), scene, kNoRoom);
+        FrameSettings settings = makeSettings(mode);
+        settings.keep_history = hasHistory(mode);
+        settings.waits_for_lists = false;
+        settings.most_px = most_px;
+        goAhead(frame, eyesOf(most_px), settings, 2);
+        const std::uint64_t bytes = context().memoryUse().current_bytes;
+        settings.mark = 1;
+        for (const glm::uvec2 size_px :
+             {glm::uvec2(64, 80), least_px, most_px, least_px, glm::uvec2(81, 50), most_px}) {
+            CAPTURE(size_px.x);
+            for (int i = 0; i < 2; ++i) {
+                const auto result = frame.renderAhead(eyesOf(size_px), settings);
+                CHECK((!result || result->mark < settings.mark));
+                ++settings.mark;
+            }
+            CHECK(context().memoryUse().current_bytes == bytes);
+        }
+        CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
+
+        KeptFrame grows(context(), scene, kNoRoom);
+        goAhead(grows, eyesOf(least_px), settings, 3);
+        CHECK_FALSE(grows.makeRoomFor(most_px));
+        while (!grows.makeRoomFor(most_px)) {
+            goAhead(grows, eyesOf(least_px), settings, 1);
+            std::this_thread::yield();
+        }
+        goAhead(grows, eyesOf(most_px), settings, 4);
+        CHECK(countOf(*grows.finish(), "frames_cut_short") == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(Atelier, "frames of a scene as it was go on with it, and none is waited for") {
+    auto was = std::make_unique<GpuScene>(scene.asItIs());
+    KeptFrame frame(context(), *was), other(context(), scene);
+    const auto eyes = eyesAt(view.eye, 0);
+    goAhead(frame, eyes, seeing(), 2);
+    frame.finish();
+    frame.goOnWith(scene);
+    was.reset();
+    CHECK_FALSE(frame.renderAhead(eyes, seeing()));
+    other.render(eyes, seeing());
+    CHECK(shownBy(frame) == shownBy(other));
 }
 
 TEST_CASE_FIXTURE(Atelier,

@@ -45,6 +45,7 @@ struct Machine {
     std::function<double(double time_s, double gpu_ms)> lost = {};
     Mode mode = Mode::kTemporal;
     GovernedSettings wish = kAll;
+    int late = 0;  // frames from a change until it is drawn
 };
 
 struct Run {
@@ -60,13 +61,19 @@ struct Run {
     explicit Run(const Machine& machine) {
         Governor governor;
         double time_s = 0.0;
+        GovernedSettings chosen, settings;
+        int late = 0;
         while (time_s < machine.seconds) {
             governor.wish(machine.quality, machine.mode, machine.wish);
-            const GovernedSettings settings = governor.settings();
+            if (std::exchange(chosen, governor.settings()) != governor.settings()) {
+                late = machine.late + 1;
+            }
+            late = std::max(late - 1, 0);
+            if (late == 0 || frames.empty()) { settings = chosen; }
             const double period_ms = machine.period_ms(time_s);
             const double gpu_ms = cost(machine.ms(time_s), machine.fixed, settings, frames.size());
             const double lost_periods = machine.lost ? machine.lost(time_s, gpu_ms) : 0.0;
-            governor.measure({gpu_ms, period_ms, false, lost_periods, workOf(settings)});
+            governor.measure({gpu_ms, period_ms, settings != chosen, lost_periods, workOf(settings)});
             frames.push_back({time_s, gpu_ms, period_ms, settings, governor.isBeaten(), governor.sentence(),
                               lost_periods});
             time_s += 1e-3 * period_ms * (1.0 + lost_periods);
@@ -130,6 +137,20 @@ void checkCalm(const Run& run, const std::vector<double>& upheavals_s, std::size
 
 Over constantly(double value) {
     return [=](double) { return value; };
+}
+
+TEST_CASE("a change that is drawn some frames later is judged by frames that show it") {
+    for (const Mode mode : {Mode::kTemporal, Mode::kPredicted, Mode::kShared}) {
+        CAPTURE(nameOf(mode));
+        Machine machine{.ms = [](double time_s) { return time_s < 5.0 || time_s > 10.0 ? 7.0 : 25.0; },
+                        .mode = mode};
+        const Run prompt(machine);
+        machine.late = 8;
+        const Run late(machine);
+        CHECK(late.changes().size() <= prompt.changes().size() + 1);
+        CHECK(late.at(9.5).gpu_ms < kPeriodMs);
+        CHECK(late.last().settings == prompt.last().settings);
+    }
 }
 
 TEST_CASE(

@@ -431,37 +431,48 @@ TEST_CASE_FIXTURE(Shown,
     scenes.expect(settings.stereo, size_px, false);
     REQUIRE(scenes.take(state).empty());
     CHECK(scenes.drawable(settings) == settings);
-    const auto drawsWithoutCompiling = [&] {
-        Eye middle{};
-        middle.size_px = size_px;
-        middle.intrinsics = intrinsicsFromFovX(1.5, size_px);
+    Eye middle{};
+    middle.size_px = size_px;
+    middle.intrinsics = intrinsicsFromFovX(1.5, size_px);
+    const auto eyes = stereoPair(middle, 0.063);
+    const auto frameNow = [&] {
         FrameSettings frame = frameSettings(options.run.camera, settings.stereo, kWearersOrder);
         frame.half_floats = true;
         frame.keep_depth = frame.keep_both_depths = false;
+        return frame;
+    };
+    const auto drawsWithoutCompiling = [&] {
         const std::size_t before = scenes.frame().kernelCount();
-        scenes.frame().renderAhead(stereoPair(middle, 0.063), frame);
+        scenes.frame().renderAhead(eyes, frameNow());
         scenes.frame().finish();
         return scenes.frame().kernelCount() == before;
     };
     CHECK(drawsWithoutCompiling());
-    // Chosen while it is shown: frames go on as before until the kernels are ready. Values of sliders apply
-    // at once.
+    // Chosen while it is shown: frames go on as before until kernels and other frames are ready. Values of
+    // sliders apply at once.
     const ViewSettings shared = settings;
     settings.stereo.mode = Mode::kTwoPass;
     scenes.expect(settings.stereo, size_px, false);
-    CHECK(these(scenes.isMakingKernels(), scenes.drawable(settings).stereo) == these(true, shared.stereo));
+    CHECK(these(scenes.isMakingMethod(), scenes.drawable(settings).stereo) == these(true, shared.stereo));
     const auto waitUntilReady = [&] {
-        while (scenes.isMakingKernels()) {
+        while (scenes.isMakingMethod()) {
             std::this_thread::yield();
             scenes.expect(settings.stereo, size_px, false);
+            if (scenes.toRemake()) {
+                scenes.remakeFrames({{eyes.begin(), eyes.end()}, frameNow(), {}, {}, {}});
+            }
         }
     };
+    const StereoFrame* const shared_frame = &scenes.frame();
     waitUntilReady();
     CHECK(scenes.drawable(settings) == settings);
+    CHECK(&scenes.frame() != shared_frame);
+    CHECK_FALSE(scenes.frame().renderAhead(eyes, frameNow()));  // not waited for
     CHECK(drawsWithoutCompiling());
+    for (int frame = 0; frame < 2; ++frame) { scenes.passOver(); }
     settings.stereo.warp.budget = 0.9;
     scenes.expect(settings.stereo, size_px, false);
-    CHECK(these(scenes.isMakingKernels(), scenes.drawable(settings)) == these(false, settings));
+    CHECK(these(scenes.isMakingMethod(), scenes.drawable(settings)) == these(false, settings));
     // Chosen, and then changed back.
     const ViewSettings two_pass = settings;
     settings.stereo.mode = Mode::kPaper;
