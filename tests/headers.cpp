@@ -1,2 +1,1 @@
-// Empty: CMake generates the headers that test programs share only for a target with a source that includes
-// them.
+// Empty: CMake precompiles the shared headers only for a target that has a source.

@@ -11,8 +11,7 @@
 
 namespace binosplat::test {
 
-// Reads the input and checks: only Error is thrown, its message is one line, and small files do not run out
-// of memory.
+// Reads the input: only Error is thrown, its message is one line, and small files fit into memory.
 struct Tally {
     std::size_t inputs = 0, read = 0, refused = 0;
 
@@ -25,7 +24,7 @@ struct Tally {
             ++refused;
             const std::string message = error.what();
             const bool one_line = message.find_first_of("\n\r") == std::string::npos;
-            const bool enough_memory = message.find("than this machine gives") == std::string::npos;
+            const bool enough_memory = !contains(message, "than this machine gives");
             if (message.size() < 8 || !one_line || !enough_memory) {
                 FAIL_CHECK(what << ": the message is '" << message << "'");
             }
@@ -79,8 +78,7 @@ inline void flipBits(const std::string& good, int count, const Attempt& attempt)
     }
 }
 
-// `count` times a few bytes that are cut out, doubled, or overwritten with extreme values of integers and
-// floats.
+// `count` times a few bytes that are cut out, doubled, or overwritten with extreme numbers.
 inline void spliceBytes(const std::string& good, int count, const Attempt& attempt) {
     static const std::array<std::string, 10> kExtremes{std::string(8, '\xff'),
                                                        std::string(8, '\0'),

@@ -15,21 +15,20 @@ namespace binosplat::test {
 // which has already loaded and linked the libraries; that is a third of its start-up time. Returns -1 if a
 // fork is not possible, otherwise the status from `waitpid`.
 inline int (*run_in_fork)(const std::string& arguments, const std::string& environment,
-                          const std::filesystem::path& folder,
-                          const std::filesystem::path& outputs) = nullptr;
+                          const fs::path& folder, const fs::path& outputs) = nullptr;
 
 // An empty folder to run in, removed with the test. Standard output and error are kept outside of it. On
 // Windows, which has no POSIX shell, it is only a folder.
 struct Workplace {
-    std::filesystem::path base = makeBase();
-    std::filesystem::path path = base / "work";
+    fs::path base = makeBase();
+    fs::path path = base / "work";
 
-    Workplace() { std::filesystem::create_directories(path); }
+    Workplace() { fs::create_directories(path); }
     Workplace(const Workplace&) = delete;
     Workplace& operator=(const Workplace&) = delete;
     ~Workplace() {
         std::error_code ignored;
-        std::filesystem::remove_all(base, ignored);
+        fs::remove_all(base, ignored);
     }
 
 #ifndef _WIN32
@@ -58,9 +57,9 @@ struct Workplace {
         const Outcome outcome = run(arguments, environment);
         INFO(arguments << ": " << outcome.errors);
         CHECK(outcome.exit_code == exit_code);
-        CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+        CHECK(isOneLine(outcome.errors));
         CHECK(outcome.errors.starts_with("binosplat: "));
-        CHECK(outcome.errors.find(part) != std::string::npos);
+        CHECK(contains(outcome.errors, part));
     }
 
     // Any shell command.
@@ -72,8 +71,8 @@ struct Workplace {
     }
 #endif
 
-    [[nodiscard]] bool isEmpty() const { return std::filesystem::is_empty(path); }
-    [[nodiscard]] bool holds(const std::string& name) const { return std::filesystem::exists(path / name); }
+    [[nodiscard]] bool isEmpty() const { return fs::is_empty(path); }
+    [[nodiscard]] bool holds(const std::string& name) const { return fs::exists(path / name); }
     void write(const std::string& name, const std::string& text) const {
         std::ofstream(path / name, std::ios::binary) << text;
     }
@@ -81,7 +80,7 @@ struct Workplace {
     // Everything in it, by paths relative to it.
     [[nodiscard]] std::set<std::string> files() const {
         std::set<std::string> names;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
+        for (const auto& entry : fs::recursive_directory_iterator(path)) {
             names.insert(entry.path().lexically_relative(path).string());
         }
         return names;
@@ -94,10 +93,17 @@ private:
                 textIn(base / "errors")};
     }
 #endif
-    static std::filesystem::path makeBase() {
-        return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-");
-    }
+    static fs::path makeBase() { return createFolder(fs::temp_directory_path(), "binosplat-test-"); }
 };
+
+#ifndef _WIN32
+// One whose user has settings of their own.
+struct Home : Workplace {
+    Home() { setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1); }
+    ~Home() { unsetenv("XDG_CONFIG_HOME"); }
+    [[nodiscard]] std::string at(const std::string& name) const { return (path / name).string(); }
+};
+#endif
 
 // For facts that use one: TEST_CASE_FIXTURE(AtWork, "...").
 struct AtWork {

@@ -7,8 +7,7 @@ extern "C" {
 int dlclose(void*);
 int dlclose(void*) { return 0; }
 
-// OpenXR's loader 1.0.20 leaks 1304 bytes with every instance, even if a program does nothing but create and
-// destroy one.
+// OpenXR's loader 1.0.20 leaks 1304 bytes with every instance that is created and destroyed.
 const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
     return "leak:libLLVM\n"

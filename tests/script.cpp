@@ -18,10 +18,6 @@ std::map<std::string, std::list<Script>>& scripts() {
     return all;
 }
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // The rest of a line, if it begins with this word.
 std::optional<std::string> behind(const std::string& text, const std::string& word) {
     if (text != word && !text.starts_with(word + " ")) { return std::nullopt; }
@@ -31,7 +27,7 @@ std::optional<std::string> behind(const std::string& text, const std::string& wo
 // "a | b c" or "a b".
 std::vector<std::string> valuesOf(const std::string& text) {
     std::vector<std::string> values = wordsIn(text);
-    if (text.find(" | ") == std::string::npos) { return values; }
+    if (!contains(text, " | ")) { return values; }
     values.clear();
     for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 3) {
         end = text.find(" | ", begin);
@@ -155,7 +151,7 @@ private:
         } else if (begins("~")) {
             CHECK((rest_.empty() ? outcome_.errors.empty() : contains(outcome_.errors, rest_)));
         } else if (begins("warned")) {
-            CHECK(std::ranges::count(outcome_.errors, '\n') == 1);
+            CHECK(isOneLine(outcome_.errors));
             CHECK(contains(outcome_.errors, rest_));
         } else if (begins("once")) {
             const std::size_t first = outcome_.output.find(rest_);
@@ -170,7 +166,7 @@ private:
         } else if (begins("begins")) {
             CHECK(outcome_.output.starts_with(rest_));
         } else if (begins("write")) {
-            std::filesystem::create_directories((host_.folder / rest_).parent_path());
+            fs::create_directories((host_.folder / rest_).parent_path());
             std::ofstream(host_.folder / rest_, std::ios::binary) << unescaped(textOf("    "));
         } else if (begins("env")) {
             environment_ = rest_;
@@ -185,13 +181,9 @@ private:
         } else if (begins("differ")) {
             CHECK(bytesOf(wordsIn(rest_).at(0)) != bytesOf(wordsIn(rest_).at(1)));
         } else if (begins("absent")) {
-            for (const std::string& word : wordsIn(rest_)) {
-                CHECK_FALSE(std::filesystem::exists(host_.folder / word));
-            }
+            for (const std::string& word : wordsIn(rest_)) { CHECK_FALSE(fs::exists(host_.folder / word)); }
         } else if (begins("there")) {
-            for (const std::string& word : wordsIn(rest_)) {
-                CHECK(std::filesystem::exists(host_.folder / word));
-            }
+            for (const std::string& word : wordsIn(rest_)) { CHECK(fs::exists(host_.folder / word)); }
         } else if (begins("json")) {
             checkJson();
         } else {
@@ -202,13 +194,13 @@ private:
     }
 
     [[nodiscard]] Outcome runInShell(const std::string& command) const {
-        const std::string log = (std::filesystem::temp_directory_path() /
-                                 ("script-" + host_.folder.parent_path().filename().string()))
-                                    .string();
+        const std::string log =
+            (fs::temp_directory_path() / ("script-" + host_.folder.parent_path().filename().string()))
+                .string();
         const std::string inner = "cd '" + host_.folder.string() + "' && { " + command + "; }";
         const int status = std::system((inner + " >'" + log + "' 2>'" + log + "-errors'").c_str());
         Outcome outcome{status / 256, textIn(log), textIn(log + "-errors")};
-        for (const std::string& file : {log, log + "-errors"}) { std::filesystem::remove(file); }
+        for (const std::string& file : {log, log + "-errors"}) { fs::remove(file); }
         return outcome;
     }
     void runCommand(const std::string& words, const std::function<Outcome()>& run) {
@@ -224,13 +216,13 @@ private:
     void checkRefused(const std::string& text) {
         const std::size_t space = std::min(text.find(' '), text.size());
         CHECK(outcome_.exit_code == (space == 1 ? 1 : std::stoi(text.substr(1, space - 1))));
-        CHECK(std::ranges::count(outcome_.errors, '\n') == 1);
+        CHECK(isOneLine(outcome_.errors));
         if (is_program_) { CHECK(outcome_.errors.starts_with(host_.errors_begin)); }
         CHECK(contains(outcome_.errors, unescaped(text.substr(std::min(space + 1, text.size())))));
     }
     void checkFiles() {
         std::set<std::string> names;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(host_.folder)) {
+        for (const auto& entry : fs::recursive_directory_iterator(host_.folder)) {
             names.insert(entry.path().lexically_relative(host_.folder).generic_string());
         }
         const std::vector<std::string> expected = wordsIn(rest_);

@@ -15,7 +15,7 @@ struct Outcome {
 struct ScriptHost {
     // Executes `> WORDS`. The environment is NAME=VALUE ..., as for `env`.
     std::function<Outcome(const std::string& words, const std::string& environment)> run;
-    std::filesystem::path folder{};              // where a script's files are
+    fs::path folder{};                           // where a script's files are
     std::string errors_begin{};                  // every line of error begins with this
     std::map<std::string, std::string> names{};  // values of $NAME
     // `[NAME] LINE` is for builds that have NAME, `[!NAME] LINE` for others

@@ -11,12 +11,11 @@ inline bool shared_data_is_missing = false;
 inline doctest::test_suite needsSharedData() { return doctest::test_suite("shared_data"); }
 
 // BINOSPLAT_TEST_DATA if set, otherwise ../shared/data beside the checkout.
-inline std::optional<std::filesystem::path> sharedData() {
+inline std::optional<fs::path> sharedData() {
     const char* chosen = std::getenv("BINOSPLAT_TEST_DATA");
-    const std::filesystem::path folder = chosen != nullptr
-                                             ? std::filesystem::path(chosen)
-                                             : std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "../shared/data";
-    if (!std::filesystem::is_directory(folder)) {
+    const fs::path folder =
+        chosen != nullptr ? fs::path(chosen) : fs::path(BINOSPLAT_SOURCE_DIR) / "../shared/data";
+    if (!fs::is_directory(folder)) {
         shared_data_is_missing = true;
         MESSAGE("skipped: no shared test scenes at " << folder.string() << " (set BINOSPLAT_TEST_DATA)");
         return std::nullopt;

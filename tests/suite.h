@@ -62,8 +62,7 @@ namespace binosplat::test {
 
 namespace fs = std::filesystem;
 
-// Facts that take long and rarely break: TEST_CASE("..." * nightly()). .ci/nightly checks them, .ci/run skips
-// them.
+// For facts that take long and rarely break, TEST_CASE("..." * nightly()): .ci/nightly checks them.
 struct nightly : doctest::skip {};
 
 // The whole content of a file, byte by byte.
@@ -75,6 +74,24 @@ inline std::string textIn(const fs::path& file) {
 inline std::vector<std::string> wordsIn(const std::string& text) {
     std::istringstream stream(text);
     return {std::istream_iterator<std::string>(stream), {}};
+}
+
+inline std::vector<std::string> linesIn(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) { lines.push_back(line); }
+    return lines;
+}
+inline bool isOneLine(const std::string& text) {
+    return text.ends_with('\n') && std::ranges::count(text, '\n') == 1;
+}
+// A message with the backslashes that Windows writes in paths turned into slashes.
+inline std::string withSlashes(std::string text) {
+    if constexpr (fs::path::preferred_separator != '/') { std::ranges::replace(text, '\\', '/'); }
+    return text;
+}
+inline bool contains(const std::string& text, const std::string& part) {
+    return withSlashes(text).find(withSlashes(part)) != std::string::npos;
 }
 
 // JSON with some keys set to their expected values: it equals the original if it had those values.
@@ -113,8 +130,7 @@ Range within(Low low, High high) {
     return {static_cast<double>(low), static_cast<double>(high), true};
 }
 
-// From 0 to 1. The numbers of std::mt19937 are the same everywhere; those of the standard's distributions are
-// not.
+// From 0 to 1; the numbers of std::mt19937 are the same everywhere, those of distributions are not.
 inline double drawUnit(std::mt19937& random) { return static_cast<double>(random() >> 8) / 16777216.0; }
 inline double drawBetween(std::mt19937& random, double low, double high) {
     return low + (high - low) * drawUnit(random);

@@ -28,8 +28,7 @@ struct Pictures : Workplace {
         const Outcome outcome = go("compare " + arguments);
         CHECK(outcome.errors.empty());
         std::vector<std::pair<std::string, double>> lines;
-        std::istringstream stream(outcome.output);
-        for (std::string line; std::getline(stream, line);) {
+        for (const std::string& line : linesIn(outcome.output)) {
             const std::size_t space = line.find(' ');
             lines.emplace_back(line.substr(0, space), std::stod(line.substr(space)));
         }
@@ -37,21 +36,17 @@ struct Pictures : Workplace {
     }
 };
 
-TEST_CASE_FIXTURE(
-    Pictures,
-    "each score is a line with its name, LPIPS comes with its weights, and FLIP sees less from afar") {
+TEST_CASE_FIXTURE(Pictures, "each score is a line with its name, and FLIP sees less from afar") {
     const auto three = scores("a.pfm b.pfm"), four = scores("a.pfm b.pfm --lpips w.bin");
     REQUIRE(three.size() == 3);
     REQUIRE(four.size() == 4);
     CHECK(std::equal(three.begin(), three.end(), four.begin()));
-    CHECK(four[0].first == "psnr");
-    CHECK(four[0].second == between(10.0, 40.0));
-    CHECK(four[1].first == "ssim");
-    CHECK(four[1].second < 0.99);
-    CHECK(four[2].first == "flip");
-    CHECK(four[2].second > 0.01);
-    CHECK(four[3].first == "lpips");
-    CHECK(four[3].second > 0.01);
+    const std::vector<std::tuple<std::string, double, double>> expected{
+        {"psnr", 10.0, 40.0}, {"ssim", -1.0, 0.99}, {"flip", 0.01, 1.0}, {"lpips", 0.01, 1e9}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& [name, least, most] = expected[i];
+        CHECK(these(four[i].first, four[i].second) == these(name, between(least, most)));
+    }
     CHECK(scores("a.pfm b.pfm --pixels-per-degree 67.0206") == three);
     CHECK(scores("a.pfm b.pfm --pixels-per-degree 500").at(2).second < 0.8 * three[2].second);
 }
@@ -61,18 +56,10 @@ SCRIPT(compare, "app/compare") {
     runScript(programIn(pictures));
 }
 
-TEST_CASE("a value that is not finite is as far off as can be") {
-    const Pictures pictures;
-    const auto broken = pictures.scores("a.pfm nan.pfm --lpips w.bin");
-    REQUIRE(broken.size() == 4);
-    CHECK(broken[0].second == -std::numeric_limits<double>::infinity());
-    CHECK(broken[3].second == std::numeric_limits<double>::infinity());
-}
-
 TEST_CASE("of two paths come the mean, the worst frame, and how much more one changes than the other") {
     const Pictures pictures;
     for (const char* folder : {"still", "flickers", "empty", "short"}) {
-        std::filesystem::create_directory(pictures.path / folder);
+        fs::create_directory(pictures.path / folder);
     }
     const auto write = [&](const std::string& name, float grey) {
         writePfm(pictures.path / (name + ".pfm"), makeFlat({20, 20}, glm::vec3(grey)));

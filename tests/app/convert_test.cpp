@@ -21,22 +21,19 @@ struct Converted : Workplace {
     [[nodiscard]] Scene load(const std::string& name) const { return loadScene((path / name).string()); }
 };
 
-TEST_CASE(
-    "a scene goes through every format within what the line says that it loses, and may take the place of "
-    "its own file") {
-    const Converted work;
-    CHECK(work.convert("builtin:slanted-wall a.ply").loses == "nothing");
-    const Converted::Said spz = work.convert("a.ply b.spz");
+TEST_CASE_FIXTURE(Converted, "a scene goes through every format within what the line says that it loses") {
+    CHECK(convert("builtin:slanted-wall a.ply").loses == "nothing");
+    const Converted::Said spz = convert("a.ply b.spz");
     CHECK(spz.written.starts_with("b.spz: 1681 splats (discs), SH degree 0"));
     CHECK(spz.loses ==
           "positions in steps of 1.53e-05 units, scales of 6 %; colours and opacities of 8 bits; rotations "
           "of 10 bits a component; "
           "that its splats are discs (render it with --flatten)");
-    CHECK(work.convert("b.spz b.spz").loses.find("discs") == std::string::npos);
-    static_cast<void>(work.convert("b.spz c.ply"));
-    static_cast<void>(work.convert("a.ply a.ply"));
-    CHECK(work.files() == Files{"a.ply", "b.spz", "c.ply"});
-    const Scene made = loadScene("builtin:slanted-wall"), ply = work.load("a.ply"), back = work.load("c.ply");
+    CHECK_FALSE(contains(convert("b.spz b.spz").loses, "discs"));
+    static_cast<void>(convert("b.spz c.ply"));
+    static_cast<void>(convert("a.ply a.ply"));
+    CHECK(files() == Files{"a.ply", "b.spz", "c.ply"});
+    const Scene made = loadScene("builtin:slanted-wall"), ply = load("a.ply"), back = load("c.ply");
     REQUIRE(back.size() == made.size());
     CHECK(these(ply.positions, ply.sh) == these(made.positions, made.sh));
     for (std::size_t i = 0; i < made.size(); ++i) {
@@ -44,15 +41,15 @@ TEST_CASE(
         CHECK(std::abs(back.opacities[i] - made.opacities[i]) < 0.002f);
     }
 #ifdef BINOSPLAT_SOG
-    const Converted::Said sog = work.convert("a.ply a.sog");
+    const Converted::Said sog = convert("a.ply a.sog");
     CHECK(sog.written.starts_with("a.sog: 1681 splats (discs), SH degree 0"));
     CHECK(sog.loses ==
           "the order of the splats; positions of 16 bits over the logarithm of the scene's extent; scales "
           "and colours of 256 values "
           "each; rotations and opacities of 8 bits");
-    static_cast<void>(work.convert("a.sog d.ply"));
-    static_cast<void>(work.convert("d.ply d.sog"));
-    CHECK(these(work.load("d.sog").size(), work.load("d.sog").isGaussian3d()) == these(made.size(), false));
+    static_cast<void>(convert("a.sog d.ply"));
+    static_cast<void>(convert("d.ply d.sog"));
+    CHECK(these(load("d.sog").size(), load("d.sog").isGaussian3d()) == these(made.size(), false));
 #endif
 }
 
@@ -62,7 +59,7 @@ TEST_CASE_FIXTURE(Converted, "a sphere can be cut out of a scene, and keeps all 
     const Outcome outcome = go(
         fmt::format("convert builtin:slanted-wall a.ply --crop {},{},{},0.5", centre.x, centre.y, centre.z));
     const Scene cut = load("a.ply");
-    CHECK(outcome.output.find(fmt::format("{} of 1681 splats lie within", cut.size())) != std::string::npos);
+    CHECK(contains(outcome.output, fmt::format("{} of 1681 splats lie within", cut.size())));
     std::size_t next = 0;
     for (std::size_t i = 0; i < wall.size(); ++i) {
         if (glm::distance(glm::dvec3(wall.positions[i]), centre) > 0.5) { continue; }

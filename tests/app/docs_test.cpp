@@ -54,8 +54,7 @@ bool hasAnchor(const fs::path& document, const std::string& anchor) {
                                [&](const std::string& heading) { return anchorOf(heading) == anchor; });
 }
 
-// Options of cmake, ctest, doctest, apt-get, compare_frame_logs and other programs whose commands the
-// documents show.
+// Options of cmake, ctest, doctest, apt-get and other programs whose commands the documents show.
 const std::set<std::string> kForeignOptions{
     "--preset",    "--build",   "--install", "--config",    "--test-dir",
     "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
@@ -75,9 +74,8 @@ bool isOption(const std::string& name) {
 // Lines of fenced blocks, and spans of inline code.
 std::vector<std::string> codeLines(const std::string& text) {
     std::vector<std::string> lines;
-    std::istringstream stream(text);
     bool fenced = false;
-    for (std::string line; std::getline(stream, line);) {
+    for (const std::string& line : linesIn(text)) {
         if (line.starts_with("```")) {
             fenced = !fenced;
         } else if (fenced || line.starts_with("    ")) {
@@ -92,12 +90,11 @@ std::vector<std::string> codeLines(const std::string& text) {
 // The words of a command, up to where a shell would end it, without the brackets around optional parts.
 std::vector<std::string> wordsOf(const std::string& line) {
     std::vector<std::string> words;
-    std::istringstream stream(line);
-    for (std::string word; stream >> word;) {
+    for (const std::string& word : wordsIn(line)) {
         if (word == "&&" || word == "|" || word == ">" || word.starts_with('#')) { break; }
         const bool ends = word.ends_with(';') || word.ends_with(',');
         const std::size_t begin = word.find_first_not_of("[\""), end = word.find_last_not_of("];,\"");
-        if (begin != std::string::npos && end != std::string::npos && begin <= end) {
+        if (begin != std::string::npos && begin <= end) {
             words.push_back(word.substr(begin, end + 1 - begin));
         }
         if (ends) { break; }
@@ -105,8 +102,7 @@ std::vector<std::string> wordsOf(const std::string& line) {
     return words;
 }
 
-// The words after "binosplat" in a line that calls it, with or without a folder and variables before it;
-// empty otherwise.
+// The words after "binosplat" in a line that calls it, behind a folder and variables; else none.
 std::vector<std::string> callOfProgram(const std::string& line) {
     const std::vector<std::string> words = wordsOf(line);
     const auto is_variable = [](const std::string& word) {
@@ -125,8 +121,7 @@ bool isPlaceholder(const std::string& word) {
     return std::isupper(static_cast<unsigned char>(word[0])) != 0 || word.find('|') != std::string::npos;
 }
 
-// The reason why `binosplat CALL` would be refused, or "". Values are checked only if no word is a
-// placeholder.
+// Why `binosplat CALL` would be refused, or "". Values are checked only if no word is a placeholder.
 std::string wrongCall(std::vector<std::string> call) {
     // Only mentioned, not called.
     if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) {
@@ -140,24 +135,22 @@ std::string wrongCall(std::vector<std::string> call) {
         test::parseWords(call);
     } catch (const Error& error) {
         const std::string message = error.what();
-        const bool needs_files =
-            message.starts_with("--view is given without") || std::ranges::any_of(call, isPlaceholder);
-        const bool is_understood =
-            error.code() != ExitCode::kUsage || message.starts_with("--view is given without");
+        const bool lacks_cameras = message.starts_with("--view is given without"),
+                   needs_files = lacks_cameras || std::ranges::any_of(call, isPlaceholder),
+                   is_understood = error.code() != ExitCode::kUsage || lacks_cameras;
         return is_understood && needs_files ? "" : message;
     }
     return "";
 }
 
-TEST_CASE(
-    "every library that is built with has its row in the notices, and its licence if it is compiled in") {
+TEST_CASE("every library that is built with has its row in the notices, and its licence where compiled in") {
     const std::string notices = textIn(kSource / "third_party" / "NOTICES.md");
     const std::size_t licences = notices.find("\n## Licences of what is compiled in");
     REQUIRE(licences != std::string::npos);
     std::string rows;
     for (const std::string& row : findAll(notices.substr(0, licences), "\n(\\|[^\n]*)")) {
         for (const char c : row) { rows += static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
-        if (row.find("compiled in") == std::string::npos) { continue; }
+        if (!contains(row, "compiled in")) { continue; }
         const std::string link = row.substr(2, row.find(')') - 1);
         CHECK_MESSAGE(notices.find(link, licences) != std::string::npos, "no licence of " << link);
     }
@@ -165,12 +158,11 @@ TEST_CASE(
                                                        R"(add_library\(third_party_([a-z0-9]+) )");
     CHECK(libraries.size() > 10);
     for (const std::string& library : libraries) {
-        CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library);
+        CHECK_MESSAGE(contains(rows, library), "no row of " << library);
     }
 }
 
-TEST_CASE_FIXTURE(test::AtWork,
-                  "fish completes commands, options, choices and files, and zsh can read its completion") {
+TEST_CASE_FIXTURE(test::AtWork, "fish completes what is typed, and zsh can read its completion") {
     if (!test::isInstalled("fish", "fish") || !test::isInstalled("zsh", "zsh")) { return; }
     work.write("complete.fish", documentOf("fish") +
                                     "for words in re 'render --mode pre' 'compare --lp' 'render --path pos'\n"
@@ -183,9 +175,7 @@ TEST_CASE_FIXTURE(test::AtWork,
     CHECK(these(zsh.exit_code, zsh.errors) == these(0, ""));
 }
 
-TEST_CASE_FIXTURE(
-    test::AtWork,
-    "desktops accept the program's entry, formats and description, and these name the same formats") {
+TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats and description") {
     if (!test::isInstalled("desktop-file-validate", "desktop-file-utils") ||
         !test::isInstalled("appstreamcli", "appstream")) {
         return;
@@ -203,30 +193,37 @@ TEST_CASE_FIXTURE(
     }
     CHECK(findAll(textIn(base + ".desktop"), "MimeType=(.*)\n") == std::vector<std::string>{opened});
     for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
-        CHECK_MESSAGE(opened.find(type + ";") != std::string::npos, type);
+        CHECK_MESSAGE(contains(opened, type + ";"), type);
     }
 }
 
-TEST_CASE_FIXTURE(
-    test::AtWork,
-    "bash completes commands, options, the values of choices, and files where an option takes one") {
-    work.write("complete", documentOf("bash") +
-                               "\ncomplete_words() { COMPREPLY=(); COMP_CWORD=$1; shift; "
-                               "COMP_WORDS=(\"$@\"); _binosplat; echo \"${COMPREPLY[*]}\"; }\n"
-                               "complete_words 1 binosplat re\n"
-                               "complete_words 3 binosplat render --mode pre\n"
-                               "complete_words 2 binosplat compare --lp\n"
-                               "complete_words 3 binosplat render --path pos\n"
-                               "complete_words 3 binosplat bench --motion pos\n"
-                               "complete_words 3 binosplat render --rate pos\n");
+TEST_CASE_FIXTURE(test::AtWork, "bash completes commands, options, the values of choices, and files") {
+    std::string expected, script = documentOf("bash") +
+                                   "\ncomplete_words() { COMPREPLY=(); COMP_CWORD=$1; shift; "
+                                   "COMP_WORDS=(\"$@\"); _binosplat; echo \"${COMPREPLY[*]}\"; }\n";
+    const auto check = [&](int at, const std::string& words, const std::string& completed) {
+        script += fmt::format("complete_words {} binosplat {}\n", at, words);
+        expected += completed + "\n";
+    };
+    check(1, "re", "render");
+    check(2, "compare --lp", "--lpips");
+    for (const auto& [words, completed] :
+         {std::pair("render --mode pre", "predicted"), std::pair("render --path-axes uni", "unity"),
+          std::pair("view --dominant le", "left"), std::pair("render --rate pos", ""),
+          std::pair("render --headset pos", "")}) {
+        check(3, words, completed);
+    }
+    for (const std::string& option :
+         wordsIn("render:--path render:--out render:--cameras bench:--motion bench:--photos compare:--lpips "
+                 "scene:--out view:--config view:--shaders view:--simulate")) {
+        check(3, edited(option, ": =>  ") + " pos", "poses.csv");
+    }
+    work.write("complete", script);
     work.write("poses.csv", "x");
-    CHECK(work.runCommand("bash ./complete").output ==
-          "render\npredicted\n--lpips\nposes.csv\nposes.csv\n\n");
+    CHECK(work.runCommand("bash ./complete").output == expected);
 }
 
-TEST_CASE_FIXTURE(
-    test::AtWork,
-    "the man page has no line that groff complains about, and the program prints the documents") {
+TEST_CASE_FIXTURE(test::AtWork, "groff accepts the man page, and the program prints the documents") {
     work.write("page", work.go("document man").output);
     CHECK(work.bytesOf("page") == documentOf("man"));
     const test::Outcome formatted =
@@ -234,8 +231,7 @@ TEST_CASE_FIXTURE(
     CHECK(these(formatted.exit_code, formatted.errors.empty()) == these(0, true));
 }
 
-TEST_CASE("links of the documents lead somewhere, and the options and files that they name exist" *
-          test::nightly()) {
+TEST_CASE("links of the documents lead somewhere; the options and files they name exist") {
     int links = 0, options = 0, files = 0;
     for (const fs::path& document : documents()) {
         CAPTURE(document);
@@ -284,15 +280,13 @@ TEST_CASE("commands that the documents show are understood" * test::nightly()) {
                 ++runs;
             }
             for (const std::string& preset : findAll(line, "--preset ([a-z0-9]+)")) {
-                CHECK_MESSAGE(presets.find(fmt::format("\"name\": \"{}\"", preset)) != std::string::npos,
-                              line);
+                CHECK_MESSAGE(contains(presets, fmt::format("\"name\": \"{}\"", preset)), line);
             }
             for (const std::string& word : words) {
-                if (!std::regex_match(word,
-                                      std::regex("(configs|tests|third_party|xr|docs)/[a-zA-Z0-9_./-]+"))) {
-                    continue;
+                if (std::regex_match(word,
+                                     std::regex("(configs|tests|third_party|xr|docs)/[a-zA-Z0-9_./-]+"))) {
+                    CHECK_MESSAGE(fs::exists(kSource / word), line);
                 }
-                CHECK_MESSAGE(fs::exists(kSource / word), line);
             }
         }
     }

@@ -25,8 +25,7 @@ namespace binosplat::test {
 namespace {
 
 std::ptrdiff_t countThreads() {
-    return std::distance(std::filesystem::directory_iterator("/proc/self/task"),
-                         std::filesystem::directory_iterator());
+    return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
 }
 // Threads that libraries start when they are loaded (log4cplus, which comes with OpenImageIO) and never need
 // again. A fork does not have them.
@@ -39,7 +38,7 @@ bool areWords(const std::string& text, wordexp_t& words) {
 
 bool isOneCommand(const std::string& text) { return text.find_first_of("|&;<>(){}`\n") == std::string::npos; }
 
-void redirect(int descriptor, const std::filesystem::path& file) {
+void redirect(int descriptor, const fs::path& file) {
     const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     if (opened < 0 || dup2(opened, descriptor) < 0) { _exit(126); }
     close(opened);
@@ -59,8 +58,8 @@ void redirect(int descriptor, const std::filesystem::path& file) {
     _exit(code);  // `exit` would wait for the libraries' threads
 }
 
-int runInFork(const std::string& arguments, const std::string& environment,
-              const std::filesystem::path& folder, const std::filesystem::path& outputs) {
+int runInFork(const std::string& arguments, const std::string& environment, const fs::path& folder,
+              const fs::path& outputs) {
     if (countThreads() != threads_of_libraries || !isOneCommand(arguments) || !isOneCommand(environment)) {
         return -1;
     }
@@ -75,7 +74,7 @@ int runInFork(const std::string& arguments, const std::string& environment,
         }
         redirect(STDOUT_FILENO, outputs / "output");
         redirect(STDERR_FILENO, outputs / "errors");
-        std::filesystem::current_path(folder);
+        fs::current_path(folder);
         setenv("PWD", folder.c_str(), 1);
         runHere(arguments, environment);
     }
@@ -91,7 +90,7 @@ bool loadAhead() {
     for (const char* folder : {"/usr/share/vulkan/icd.d", "/usr/share/vulkan/implicit_layer.d",
                                "/usr/share/openxr/1/api_layers/explicit.d"}) {
         std::error_code missing;
-        for (const auto& manifest : std::filesystem::directory_iterator(folder, missing)) {
+        for (const auto& manifest : fs::directory_iterator(folder, missing)) {
             std::ifstream file(manifest.path());
             const std::string text(std::istreambuf_iterator<char>(file), {});
             std::smatch path;
@@ -103,8 +102,7 @@ bool loadAhead() {
     return true;
 }
 
-// OpenEXR's threads would outlive the first picture that a test reads, and a process with threads cannot be
-// forked.
+// OpenEXR's threads would outlive a picture that is read, and a process with threads cannot be forked.
 bool readWithoutThreads() {
 #ifdef BINOSPLAT_OPENIMAGEIO
     return OIIO::attribute("exr_threads", -1);

@@ -38,7 +38,7 @@ void checkFetched(const Workplace& work, const std::string& scene) {
     CHECK(work.runCommand("cmp left.png far/left.png && cmp right.png far/right.png").exit_code == 0);
 #else
     CHECK(fetched.exit_code == 1);
-    CHECK(fetched.errors.find("network") != std::string::npos);
+    CHECK(contains(fetched.errors, "network"));
 #endif
 }
 

@@ -2,6 +2,7 @@
 #include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/panorama_tags.h"
+#include "tests/engine/picture/pictures.h"
 #include "tests/run_program.h"
 
 SUITE(panorama) {
@@ -11,18 +12,13 @@ constexpr double kPi = std::numbers::pi;
 // 3D Gaussians, whose shape depends on the camera's axes; seen from a place within the room.
 const std::string kPlace = "--eye 0.02,-1.5,1.2 --up 0,-1,0 ";
 
-glm::vec3 colourAt(const Image& image, std::size_t x, std::size_t y) {
-    const float* p = &image.values[static_cast<std::size_t>(image.channels) * (y * image.size_px.x + x)];
-    return {p[0], p[1], p[2]};
-}
-
 // How a picture differs from another one turned left by `shift` columns: the mean square of the step of this
 // difference from one column to the next.
-double stepAt(const Image& a, const Image& b, std::size_t shift, std::size_t column) {
+double stepAt(const Image& a, const Image& b, std::uint32_t shift, std::uint32_t column) {
     double sum = 0.0;
-    for (std::size_t y = 0; y < a.size_px.y; ++y) {
-        const auto differs = [&](std::size_t x) {
-            return colourAt(a, x % a.size_px.x, y) - colourAt(b, (x + shift) % b.size_px.x, y);
+    for (std::uint32_t y = 0; y < a.size_px.y; ++y) {
+        const auto differs = [&](std::uint32_t x) {
+            return colourOf(a, x % a.size_px.x, y) - colourOf(b, (x + shift) % b.size_px.x, y);
         };
         const glm::vec3 step = differs(column + 1) - differs(column);
         sum += static_cast<double>(glm::dot(step, step)) / 3.0;
@@ -44,46 +40,39 @@ std::uint32_t numberIn(const std::string& bytes, std::size_t at) {
 }
 
 TEST_CASE("what the faces show of a direction, the panorama shows there, also where they meet") {
-    const auto colourOf = [](const glm::dvec3& direction) {
-        return glm::vec4(0.5 + 0.4 * glm::normalize(direction), 1.0);
+    const auto seenIn = [](const glm::dvec3& direction) {
+        return glm::vec3(0.5 + 0.4 * glm::normalize(direction));
     };
     for (const double width_rad : {kPi, 2.0 * kPi}) {
         const Panorama panorama{width_rad,
                                 {static_cast<std::uint32_t>(std::lround(64.0 * width_rad / kPi)), 64}};
         std::vector<Image> faces;
         for (const Eye& face : facesOf(panorama, {})) {
-            Image& image = faces.emplace_back(Image{face.size_px, 4, {}});
-            for (std::size_t i = 0; i < image.pixelCount(); ++i) {
-                const glm::dvec2 at(static_cast<double>(i % face.size_px.x) + 0.5,
-                                    static_cast<double>(i / face.size_px.x) + 0.5);
-                const glm::dvec2 slope =
-                    (at - glm::dvec2(face.intrinsics.cx, face.intrinsics.cy)) / face.intrinsics.fx;
-                const glm::vec4 colour =
-                    colourOf(face.world_from_camera.orientation * glm::dvec3(slope, 1.0));
-                for (int c = 0; c < 4; ++c) { image.values.push_back(colour[c]); }
-            }
+            const Intrinsics& k = face.intrinsics;
+            faces.push_back(makePicture(
+                face.size_px,
+                [&](double x, double y) {
+                    return seenIn(face.world_from_camera.orientation *
+                                  glm::dvec3((x + 0.5 - k.cx) / k.fx, (y + 0.5 - k.cy) / k.fx, 1.0));
+                },
+                4));
         }
         const Image seen = panoramaOf(panorama, faces);
-        float worst = 0.0f;
-        for (std::size_t i = 0; i < seen.pixelCount(); ++i) {
-            const double right =
-                ((static_cast<double>(i % seen.size_px.x) + 0.5) / seen.size_px.x - 0.5) * width_rad;
-            const double down =
-                ((static_cast<double>(i / seen.size_px.x) + 0.5) / seen.size_px.y - 0.5) * kPi;
-            const glm::vec4 expected = colourOf(
-                {std::sin(right) * std::cos(down), std::sin(down), std::cos(right) * std::cos(down)});
-            for (int c = 0; c < 4; ++c) {
-                worst =
-                    std::max(worst, std::abs(seen.values[4 * i + static_cast<std::size_t>(c)] - expected[c]));
-            }
-        }
-        CHECK(worst < 5e-4f);  // the mean over a pixel is not the value at its middle
+        const Image expected = makePicture(
+            seen.size_px,
+            [&](double x, double y) {
+                const double right = ((x + 0.5) / seen.size_px.x - 0.5) * width_rad,
+                             down = ((y + 0.5) / seen.size_px.y - 0.5) * kPi;
+                return seenIn(
+                    {std::sin(right) * std::cos(down), std::sin(down), std::cos(right) * std::cos(down)});
+            },
+            4);
+        const double worst = compare(seen, expected, 4).largest;
+        CHECK(worst < 5e-4);  // the mean over a pixel is not the value at its middle
     }
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "where faces of a picture of all around meet, nothing stands out against the same picture "
-                  "made of others") {
+TEST_CASE_FIXTURE(AtWork, "where faces of a picture of all around meet, nothing stands out") {
     const auto around = [&](const std::string& look) {
         work.go("render builtin:atelier --projection 360 --size 256x128 " + kPlace + look + " --out around");
         return readPicture(work.path / "around/mono" BINOSPLAT_FLOAT_EXTENSION);
@@ -93,7 +82,7 @@ TEST_CASE_FIXTURE(AtWork,
     REQUIRE(ahead.size_px == glm::uvec2(256, 128));
     const Image nothing{ahead.size_px, 4, std::vector<float>(ahead.values.size(), 0.0f)};
     double edges = 0.0, own = 0.0;
-    for (std::size_t edge = 32; edge < 256; edge += 64) {
+    for (std::uint32_t edge = 32; edge < 256; edge += 64) {
         edges += stepAt(ahead, aside, 256 - 32, edge - 1);
         own += stepAt(ahead, nothing, 0, edge - 1);
     }
@@ -113,21 +102,18 @@ TEST_CASE_FIXTURE(AtWork, "each direction is where a flat picture has it, for ea
     const auto differ = [&](const std::string& around, const std::string& flat) {
         const Image a = picture("around/" + around), f = picture("flat/" + flat);
         double sum = 0.0, count = 0.0;
-        for (std::size_t y = 80; y < 176; ++y) {
-            for (std::size_t x = 80; x < 176; ++x) {
-                const double right = (static_cast<double>(x) + 0.5) * kPi / 256.0 - kPi / 2.0,
-                             down = (static_cast<double>(y) + 0.5) * kPi / 256.0 - kPi / 2.0;
+        for (std::uint32_t y = 80; y < 176; ++y) {
+            for (std::uint32_t x = 80; x < 176; ++x) {
+                const double right = (x + 0.5) * kPi / 256.0 - kPi / 2.0,
+                             down = (y + 0.5) * kPi / 256.0 - kPi / 2.0;
                 const glm::dvec2 at(std::tan(right), std::tan(down) / std::cos(right));
                 // The mean of the four surrounding pixels, which are half as wide.
-                const glm::dvec2 place = glm::floor(256.0 * at + 256.0 - 0.5);
+                const glm::uvec2 place(glm::floor(256.0 * at + 256.0 - 0.5));
                 glm::vec3 flat_colour(0.0f);
-                for (int i = 0; i < 4; ++i) {
-                    flat_colour +=
-                        0.25f * colourAt(f,
-                                         static_cast<std::size_t>(place.x) + static_cast<std::size_t>(i % 2),
-                                         static_cast<std::size_t>(place.y) + static_cast<std::size_t>(i / 2));
+                for (std::uint32_t i = 0; i < 4; ++i) {
+                    flat_colour += 0.25f * colourOf(f, place.x + i % 2, place.y + i / 2);
                 }
-                const glm::vec3 difference = colourAt(a, x, y) - flat_colour;
+                const glm::vec3 difference = colourOf(a, x, y) - flat_colour;
                 sum += glm::dot(difference, difference) / 3.0, count += 1.0;
             }
         }
@@ -148,7 +134,7 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
     CHECK(text.starts_with("XML:com.adobe.xmp" + std::string(5, '\0')));
     for (const char* said : {"ProjectionType=\"equirectangular\"", "FullPanoWidthPixels=\"64\"",
                              "CroppedAreaLeftPixels=\"0\""}) {
-        CHECK(text.find(said) != std::string::npos);
+        CHECK(contains(text, said));
     }
     CHECK(readPicture(work.path / "out/mono.png").size_px == glm::uvec2(64, 32));
     // The same for JPEG, if the build has a library for it: the tags are in the second segment.
@@ -160,7 +146,7 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
         CHECK(jpg.substr(second + 4, xmp.size()) == xmp);
         const std::size_t third = second + 2 + numberIn(jpg, second) % 65536;
         CHECK(jpg.substr(third, 1) == "\xff");
-        CHECK(jpg.substr(second, third - second).find("FullPanoWidthPixels=\"64\"") != std::string::npos);
+        CHECK(contains(jpg.substr(second, third - second), "FullPanoWidthPixels=\"64\""));
         CHECK(compare(readPicture(work.path / "out/mono.jpg"), readPicture(work.path / "out/mono.png"))
                   .psnrDb() > 35.0);
     }
@@ -193,9 +179,7 @@ std::string indexOf(const std::string& tags) {
                            box("udta", "u"));
 }
 
-TEST_CASE(
-    "the boxes that say how a film was projected lie after the decoder's, and all boxes around them grow by "
-    "as much") {
+TEST_CASE("the boxes that say how a film was projected lie after the decoder's, and those around grow") {
     const std::string none(4, '\0'), quarter = "\x40" + std::string(3, '\0');
     const auto sphere = [&](const std::string& side) {
         return box("sv3d", box("svhd", none + "binosplat" + '\0') +
@@ -209,24 +193,22 @@ TEST_CASE(
     CHECK(!errorOf([] { (void)withFilmTags(box("moov", "none"), {}); }).empty());
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "a path becomes a film, at its rate and with both eyes in each picture; without ffmpeg one "
-                  "line says what is missing") {
+TEST_CASE_FIXTURE(AtWork, "a path becomes a film with both eyes; without ffmpeg one line says so") {
     work.write("poses.csv",
                "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.04,0.01,0,0,0,0,0,1\n0.08,0.02,0,0,0,0,0,1\n");
     // A stand-in for the encoder: it leaves a film, and records how it was called.
     work.write("film", box("ftyp", "isom") + box("mdat", "pictures") + indexOf(""));
-    std::filesystem::create_directories(work.path / "bin");
+    fs::create_directories(work.path / "bin");
     const std::string here = work.path.string();
     work.write("bin/ffmpeg", "#!/bin/sh\necho \"$@\" >" + here +
                                  "/called\nfor film; do :; done\n[ \"$film\" = -version ] || cp " + here +
                                  "/film \"$film\"\n");
-    std::filesystem::permissions(work.path / "bin/ffmpeg", std::filesystem::perms::owner_all);
+    fs::permissions(work.path / "bin/ffmpeg", fs::perms::owner_all);
     const std::string film = "render builtin:one-splat --path poses.csv --size 32x32 --video ";
     work.go(film + "--projection vr180 --out out", "PATH=" + here + "/bin:" + environment("PATH"));
     const std::string called = work.bytesOf("called");
-    CHECK(called.find("-framerate 25 ") != std::string::npos);
-    CHECK(called.find("frame_%06d_stereo") != std::string::npos);
+    CHECK(contains(called, "-framerate 25 "));
+    CHECK(contains(called, "frame_%06d_stereo"));
     const std::string bytes = work.bytesOf("out/video.mp4");
     CHECK(numberIn(after(bytes, "equi"), 12) == 0x40000000u);
     CHECK(after(bytes, "st3d").at(4) == '\2');

@@ -1,16 +1,14 @@
-// Facts about rendering along a path: numbered frames of both eyes, between poses too, and nothing
-// half-written.
+// Facts about rendering along a path: numbered frames of both eyes, and nothing half-written.
 #include "tests/app/program_script.h"
 
 SUITE(path) {
 
-const double kPi = std::acos(-1.0);
 const std::string kScene = "render builtin:fence --size 64x48 --up 0,-1,0 --fov-x 60 ";
 const std::string kRender = kScene + "--eye 0,0,0 --look 0,0,3 ";
 // A tenth of a metre to the right and 20 degrees to the left in half a second, and back again in the next.
 const std::string kPoses = fmt::format(
     "time_s,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,1\n5.5,0.1,0,0,0,{:.9f},0,{:.9f}\n6.5,0,0,0,0,0,0,1\n",
-    std::sin(kPi / 18.0), std::cos(kPi / 18.0));
+    std::sin(std::numbers::pi / 18.0), std::cos(std::numbers::pi / 18.0));
 const std::string kExtension = extensionOf(PictureKind::kDisplay);
 
 struct Way : Workplace {
@@ -20,8 +18,7 @@ struct Way : Workplace {
     }
 };
 
-// frame NUMBER TIME X SINE: the time of one eye's frame, its offset to the side, and the sine of half its
-// turn.
+// frame NUMBER TIME X SINE: of one eye's frame; its offset to the side, and the sine of half its turn.
 SCRIPT(path, "app/path") {
     const Way way;
     ScriptHost host = programIn(way);
@@ -40,23 +37,15 @@ SCRIPT(path, "app/path") {
     runScript(host);
 }
 
-// Raises a signal at the Nth submission to the device.
-std::string stoppedAt(int submission) {
-    return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                       "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:{}:SIGINT",
-                       submission);
-}
-
 TEST_CASE_FIXTURE(Way, "frames that were finished before a signal are kept, and --resume makes the others") {
     const std::string walk = kRender + "--path poses.csv --mode shared --rate 4 --out ";
     go(walk + "whole");
-    const Outcome stopped = run(walk + "frames", stoppedAt(9));
+    const Outcome stopped = run(walk + "frames", fault("submit", 9, "SIGINT"));
     CHECK(stopped.exit_code == 130);
     std::size_t kept = 0;
     while (holds(fmt::format("frames/frame_{:06}_right{}", kept, kExtension))) { ++kept; }
     CHECK(kept > 0);
-    CHECK(stopped.errors.find(fmt::format("{} of 7 frames are in frames, --resume continues", kept)) !=
-          std::string::npos);
+    CHECK(contains(stopped.errors, fmt::format("{} of 7 frames are in frames, --resume continues", kept)));
     CHECK(these(files().contains("frames/report.json"), report().at("frames").size()) == these(true, kept));
     checkRefused(
         "render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode shared --rate 4 "

@@ -7,6 +7,13 @@
 
 namespace binosplat::test {
 
+// Makes the Nth call of a kind fail, or raises a signal with it (tests/faults).
+inline std::string fault(const std::string& call, int number, const std::string& what) {
+    return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                       "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT={}:{}:{}",
+                       call, number, what);
+}
+
 inline ScriptHost programIn(const Workplace& work) {
     const std::string layer = "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
                               "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=";

@@ -33,8 +33,7 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
           "  0.00 %  0 splats: larger than a tenth of the size\n",
           "  0.17 %  5 splats: floaters: seen, but alone (fewer than 5 splats within",
           "(0.1 MiB) on the GPU, 52 a splat", "if too much      convert --crop="}) {
-        CAPTURE(std::string(row));
-        CHECK(contains(info, row));
+        CHECK_MESSAGE(contains(info, row), row);
     }
     CHECK_FALSE(contains(info, "--sh-degree"));
     CHECK(contains(info, "\nup                 0,-1,0: by convention, as no floor was found\n"));
@@ -70,10 +69,7 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
     CHECK(contains(work.go("info builtin:one-splat").output, "colour space       display-encoded (sRGB)\n"));
 }
 
-TEST_CASE(
-    "a scene and its cameras that are moved together give the same picture, and reports are in the file's "
-    "coordinates") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a scene moved with its cameras gives the same picture, and reports say where") {
     const auto rendered = [&](const std::string& name, const glm::dvec3& moved, const std::string& words) {
         fs::create_directory(work.path / name);
         Scene scene = makeBuiltin("builtin:fence");

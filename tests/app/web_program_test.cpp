@@ -13,9 +13,7 @@ std::string environmentOf(const Workplace& work) {
                        work.base.string());
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "render, bench, info, convert and view take an address, and the user's cache keeps what "
-                  "--cache-limit lets it") {
+TEST_CASE_FIXTURE(AtWork, "commands take an address, and the user's cache keeps what --cache-limit lets it") {
     writePly(makeBuiltin("builtin:slanted-wall", 0), (work.path / "wall.ply").string());
     const auto done = [&](const std::string& arguments) {
         const Outcome outcome = work.go(arguments, environmentOf(work));

@@ -4,6 +4,7 @@
 #include "engine/picture/turned.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
+#include "tests/engine/picture/pictures.h"
 
 SUITE(staying_axes) {
 
@@ -45,9 +46,9 @@ TEST_CASE("all that a view shows lies in tiles that are not hidden, and most of 
     const Eye eye = eyeOf({200, 150}), picture = coverOf(eye, glm::radians(20.0));
     const glm::uvec2 tiles = tilesOf(picture.size_px), view_tiles = tilesOf(eye.size_px);
     // A lens that shows only the middle columns.
-    std::vector<std::uint8_t> lens(std::size_t{view_tiles.x} * view_tiles.y, 0);
-    for (std::size_t t = 0; t < lens.size(); ++t) {
-        lens[t] = t % view_tiles.x < 4 || t % view_tiles.x > 8 ? 1 : 0;
+    std::vector<std::uint8_t> lens;
+    for (std::uint32_t t = 0; t < view_tiles.x * view_tiles.y; ++t) {
+        lens.push_back(t % view_tiles.x < 4 || t % view_tiles.x > 8);
     }
     for (const bool has_lens : {false, true}) {
         const Eye view = turned(eye, 9.0, {0.3, 1.0, 0.8});
@@ -68,9 +69,7 @@ TEST_CASE("all that a view shows lies in tiles that are not hidden, and most of 
     }
 }
 
-TEST_CASE(
-    "axes stay until the view leaves the picture, then move ahead of a head that turns; places follow the "
-    "eyes") {
+TEST_CASE("axes stay until the view leaves the picture, then move ahead of a head that turns") {
     StayingAxes axes(kMargin);
     std::array<Eye, 2> views = stereoPair(eyeOf({200, 150}), 0.063);
     std::vector<std::size_t> moves;
@@ -99,25 +98,17 @@ TEST_CASE(
     CHECK(covers(axes.follow(views)[0], views[0]));
 }
 
-TEST_CASE(
-    "a compositor shows a picture with the view's axes as it is, and one that is turned to a filter's "
-    "accuracy") {
+TEST_CASE("a compositor shows a picture as it is, and one that is turned to a filter's accuracy") {
     const Eye view = eyeOf({120, 90}), picture = coverOf(view, kMargin);
-    const auto wave = [&](const Eye& eye, double x, double y) {
-        const glm::dvec3 ray = glm::normalize(eye.world_from_camera.orientation *
-                                              glm::dvec3((x - eye.intrinsics.cx) / eye.intrinsics.fx,
-                                                         (y - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0));
-        return static_cast<float>(0.5 + 0.3 * std::sin(20.0 * ray.x) * std::cos(15.0 * ray.y));
-    };
-    const auto draw = [&](const Eye& eye) {
-        Image image{eye.size_px, 4, {}};
-        for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
-            for (std::uint32_t x = 0; x < eye.size_px.x; ++x) {
-                const float value = wave(eye, x + 0.5, y + 0.5);
-                image.values.insert(image.values.end(), {value, value, value, 1.0f});
-            }
-        }
-        return image;
+    const auto draw = [](const Eye& eye) {
+        const auto wave = [&](double x, double y) {
+            const Intrinsics& k = eye.intrinsics;
+            const glm::dvec3 ray =
+                glm::normalize(eye.world_from_camera.orientation *
+                               glm::dvec3((x + 0.5 - k.cx) / k.fx, (y + 0.5 - k.cy) / k.fy, 1.0));
+            return glm::vec3(glm::dvec3(0.5 + 0.3 * std::sin(20.0 * ray.x) * std::cos(15.0 * ray.y)));
+        };
+        return makePicture(eye.size_px, wave, 4);
     };
     CHECK(compare(showTurned(draw(picture), picture, view), draw(view)).psnrDb() > 90.0);
     const Eye other = turned(view, 3.0, {0.2, 1.0, 0.5});
@@ -125,8 +116,7 @@ TEST_CASE(
     CHECK(compare(draw(view), draw(other)).psnrDb() < 25.0);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "while the head turns, what was seen before is the same bytes, and all the rest is rendered") {
+TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same bytes, the rest is rendered") {
     const ViewedScene view = test::viewBuiltin("builtin:atelier", {208, 176}, 20000);
     KeptFrame frame(context(), view.scene);
     FrameSettings settings;

@@ -33,10 +33,6 @@ BenchResult withError(double total_ms, double mean_square) {
     return result;
 }
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 TEST_CASE("a level fits if its splats do, which take less memory with fewer colours and as discs") {
     const auto choose = [](const std::string& options) {
         const RunOptions run = renderOptions(options);
@@ -45,11 +41,9 @@ TEST_CASE("a level fits if its splats do, which take less memory with fewer colo
     CHECK(!choose("--lod 1").fits);  // already the finest level
     CHECK(choose("--lod 1").level == 1u);
     const LevelChoice discs = choose("--memory-limit 3 --flatten");
-    CHECK(discs.fits(65536, 0));  // 48 bytes per splat
-    CHECK(!discs.fits(65537, 0));
-    CHECK(!discs.fits(65536, 1));
-    CHECK(!discs.fits(65536, 3));  // 140 and more
-    CHECK(!discs.fits(std::uint64_t{1} << 60, 3));
+    // 48 bytes per splat; with colours 140 and more.
+    CHECK(these(discs.fits(65536, 0), discs.fits(65537, 0), discs.fits(65536, 1), discs.fits(65536, 3),
+                discs.fits(std::uint64_t{1} << 60, 3)) == these(true, false, false, false, false));
     CHECK(!choose("--memory-limit 3").fits(65536, 0));  // 52 bytes
     CHECK(choose("--memory-limit 3 --flatten --sh-degree 0").fits(65536, 3));
 }
@@ -93,10 +87,9 @@ TEST_CASE("methods sweep their settings, and views draw a scene's splats in seve
     const StereoOptions &swept = plan.methods[4].stereo, &letter = plan.methods[6].stereo;
     CHECK(these(swept.warp.budget, swept.warp.gap_px, swept.order, swept.warp.margin_px) ==
           these(0.5, 3, Order::kDistance, 16));
-    CHECK_FALSE(swept.warp.forward);
-    CHECK_FALSE(swept.per_eye);
-    CHECK(letter.warp.forward);
-    CHECK(letter.per_eye);
+    for (const auto& [stereo, is_letter] : {std::pair(swept, false), std::pair(letter, true)}) {
+        CHECK(these(stereo.warp.forward, stereo.per_eye) == these(is_letter, is_letter));
+    }
     CHECK_FALSE(plan.methods[0].stereo.order);
     CHECK(!plan.ssim);
     const auto viewsIn = [&](const std::string& scene) {
@@ -138,36 +131,26 @@ TEST_CASE("size, camera, headset and repeats of the command line take the place 
                 bench.plan(camera, "--headset vive").headsets) == these(true, Names{""}));
 }
 
-TEST_CASE(
-    "LPIPS is among the scores where a config or the command line gives its weights, which nobody reads "
-    "otherwise") {
-    const Bench bench;
-    writeFloats(bench.path / "w.bin", makeLpipsWeights(9));
-    const std::string head = "[bench]\nscenes = [\"builtin:fence\"]\n",
-                      weights = (bench.path / "w.bin").string();
-    const BenchPlan alone = bench.plan(head + "scores = [\"lpips\"]\nlpips = \"w.bin\"\n");
-    CHECK(alone.lpips.has_value());
-    CHECK(alone.psnr);
-    CHECK_FALSE(alone.ssim);
-    CHECK_FALSE(alone.flip);
-    CHECK(these(bench.plan(head + "lpips = \"w.bin\"\n").lpips.has_value(),
-                bench.plan(head).lpips.has_value()) == these(true, false));
-    CHECK_FALSE(bench.plan(head + "scores = [\"psnr\"]\nlpips = \"none.bin\"\n").lpips.has_value());
-    const BenchPlan none = bench.plan(head + "scores = [\"none\"]\n", "--lpips " + weights);
-    CHECK(none.lpips.has_value());
-    CHECK(none.psnr);
-    CHECK(contains(bench.planError(head, "--lpips none.bin"), "none.bin: cannot be read"));
-    CHECK(contains(bench.planError(head + "lpips = \"none.bin\"\n"), "none.bin: cannot be read"));
-    CHECK(contains(bench.planError(head + "scores = [\"ssim\", \"lpips\"]\n"),
+TEST_CASE_FIXTURE(Bench, "LPIPS is a score where its weights are given; otherwise nobody reads them") {
+    writeFloats(path / "w.bin", makeLpipsWeights(9));
+    const std::string head = "[bench]\nscenes = [\"builtin:fence\"]\n", weights = (path / "w.bin").string();
+    const BenchPlan alone = plan(head + "scores = [\"lpips\"]\nlpips = \"w.bin\"\n");
+    CHECK(these(alone.lpips.has_value(), alone.psnr, alone.ssim, alone.flip) ==
+          these(true, true, false, false));
+    CHECK(these(plan(head + "lpips = \"w.bin\"\n").lpips.has_value(), plan(head).lpips.has_value()) ==
+          these(true, false));
+    CHECK_FALSE(plan(head + "scores = [\"psnr\"]\nlpips = \"none.bin\"\n").lpips.has_value());
+    const BenchPlan none = plan(head + "scores = [\"none\"]\n", "--lpips " + weights);
+    CHECK(these(none.lpips.has_value(), none.psnr) == these(true, true));
+    CHECK(contains(planError(head, "--lpips none.bin"), "none.bin: cannot be read"));
+    CHECK(contains(planError(head + "lpips = \"none.bin\"\n"), "none.bin: cannot be read"));
+    CHECK(contains(planError(head + "scores = [\"ssim\", \"lpips\"]\n"),
                    "b.toml:3: scores lists lpips; name its weights with --lpips FILE or `lpips` in [bench]"));
-    CHECK(contains(bench.planError(head, "--lpips " + (bench.path / "b.toml").string()),
+    CHECK(contains(planError(head, "--lpips " + (path / "b.toml").string()),
                    "b.toml: has 35 bytes, must have the 2898944"));
 }
 
-TEST_CASE(
-    "what a bench would measure twice under one name is refused, and so is a wrong config, with file and "
-    "line") {
-    const Bench bench;
+TEST_CASE_FIXTURE(Bench, "one name for two things, and a wrong config, are refused with file and line") {
     const std::string scene = "[bench]\nscenes = [\"builtin:fence\", \"b.ply\"]\n";
     for (const auto& [toml, error] : std::vector<std::pair<std::string, std::string>>{
              {"[bench]\nscenes = [\"a\", \"a\"]\n", "scene a is named twice, names must differ"},
@@ -182,10 +165,10 @@ TEST_CASE(
               "view v is named twice, names must differ"},
              {"[bench]\nrepeats = 0\n", "b.toml:2: repeats is 0, must be a whole number from 1"},
              {"[[series]]\nsizes = [\"8x8\"]\n", "b.toml:1: name is missing"}}) {
-        CHECK_MESSAGE(contains(bench.planError(toml), error), toml);
+        CHECK_MESSAGE(contains(planError(toml), error), toml);
     }
-    CHECK(bench.planError(scene + "[[views]]\nname = \"v\"\nscene = \"builtin:fence\"\n"
-                                  "[[views]]\nname = \"v\"\nscene = \"b.ply\"\n") == "");
+    CHECK(planError(scene + "[[views]]\nname = \"v\"\nscene = \"builtin:fence\"\n"
+                            "[[views]]\nname = \"v\"\nscene = \"b.ply\"\n") == "");
 }
 
 TEST_CASE("scenes have their own names, or their paths where those are equal") {
@@ -265,9 +248,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye,
     CHECK_FALSE(results[0].move_cost.has_value());
 }
 
-TEST_CASE(
-    "the front holds what is worth its time, and a picture that holds what is no number is not called "
-    "equal") {
+TEST_CASE("the front holds what is worth its time, and what is no number is not called equal") {
     std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 9.0),
                                      makeResult("a", Mode::kShared, 1, 8.0),
                                      makeResult("a", Mode::kMono, 1, 1.0),
@@ -281,19 +262,19 @@ TEST_CASE(
     CHECK(front == std::vector<bool>{false, true, false, true, false, true, false});
     const std::string svg = benchPlot({"GPU", "", results});
     CHECK(contains(svg, "Pareto front"));
-    CHECK(!contains(svg, "inf"));
+    CHECK_FALSE(contains(svg, "inf"));
     CHECK(contains(benchJson({"GPU", "", results}), "\"psnr_db\": null"));
     CHECK(std::isnan(psnrOf(std::nan(""))));
     CHECK(psnrOf(0.0) > 1e300);
-    CHECK(!contains(benchTable({"GPU", "", {withError(1.0, std::nan(""))}}), "equal"));
+    CHECK_FALSE(contains(benchTable({"GPU", "", {withError(1.0, std::nan(""))}}), "equal"));
 }
 
 TEST_CASE("a table that is wider than a terminal is several, each with its methods and no wider") {
     const std::string whole = benchTable({"GPU", "", {withError(1.0, 0.5)}}),
                       parts = benchTable({"GPU", "", {withError(1.0, 0.5)}}, 100);
     const auto wordsOf = [](const std::string& text) {
-        std::istringstream stream(text);
-        return std::multiset<std::string>(std::istream_iterator<std::string>(stream), {});
+        const std::vector<std::string> words = wordsIn(text);
+        return std::multiset<std::string>(words.begin(), words.end());
     };
     std::multiset<std::string> words = wordsOf(parts);
     CHECK(words.size() > wordsOf(whole).size());
@@ -304,8 +285,7 @@ TEST_CASE("a table that is wider than a terminal is several, each with its metho
     }
     // Words that occur more than once name rows.
     CHECK(words.count("method") >= 1);
-    std::istringstream lines(parts);
-    for (std::string line; std::getline(lines, line);) { CHECK_MESSAGE(line.size() <= 100, line); }
+    for (const std::string& line : linesIn(parts)) { CHECK_MESSAGE(line.size() <= 100, line); }
 }
 
 TEST_CASE("of an error an eye sees each tile's share, and notices it from a hundredth of the contrast on") {
@@ -321,7 +301,7 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
     CHECK(measureSeen(full, full, std::array{0.5, 1.0}).noticed == 0.0);
     // The score appears in the tables and has its own panel in the plot.
     BenchResult result = withError(1.0, 0.01);
-    CHECK(!contains(benchPlot({"GPU", "", {result}}), "of what the eye sees"));
+    CHECK_FALSE(contains(benchPlot({"GPU", "", {result}}), "of what the eye sees"));
     result.seen = seen;
     CHECK(contains(benchPlot({"GPU", "", {result}}), "of what the eye sees"));
     CHECK(contains(benchTable({"GPU", "", {result}}), "an error of 44.26 dB, and notices it in 50.00 %"));
@@ -329,9 +309,7 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
     CHECK(contains(benchCsv({"GPU", "", {result}}), ",44.2597,0.5,"));
 }
 
-TEST_CASE(
-    "of the tiles that were not rendered, those count as far under a bound that are more than 2 dB under "
-    "it") {
+TEST_CASE("tiles that were not rendered are far under a bound if they are more than 2 dB under it") {
     // Three by two tiles; those on the right and at the bottom stick out, so one row of two is whole.
     const glm::uvec2 size_px(40, 24);
     const auto squareOf = [](double psnr_db) { return static_cast<float>(std::pow(10.0, -0.1 * psnr_db)); };
@@ -357,8 +335,8 @@ TEST_CASE("plots of few or bad points stay finite") {
     for (const double ms : {0.0, 1.0, 2.5}) {
         result.total_ms = ms;
         const std::string svg = benchPlot({"GPU", "", {result}});
-        CHECK(!contains(svg, "nan"));
-        CHECK(!contains(svg, "inf"));
+        CHECK_FALSE(contains(svg, "nan"));
+        CHECK_FALSE(contains(svg, "inf"));
         CHECK(contains(svg, "a&amp;b"));
     }
 }

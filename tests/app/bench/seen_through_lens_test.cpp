@@ -1,5 +1,4 @@
-// Facts about which errors a wearer notices through a headset's lenses, according to the program's model of
-// an eye.
+// Facts about which errors a wearer notices through a headset's lenses, by the program's model.
 #include "app/bench/seen_through_lens.h"
 #include "tests/engine/picture/pictures.h"
 
@@ -11,8 +10,7 @@ Cameras wideCameras() {
     return {eye, stereoPair(eye, 0.06), 0.06, std::nullopt};
 }
 
-// A grey picture with a square of 128 pixels that is 0.06 brighter: 3.6 times the squared error of a bad
-// tile.
+// Grey, with a square of 128 pixels that is 0.06 brighter: 3.6 times the squared error of a bad tile.
 Image brightSquare(std::uint32_t left_px) {
     return makePicture({1024, 1024}, [&](std::uint32_t x, std::uint32_t y) {
         const bool inside = x >= left_px && x < left_px + 128 && y >= 448 && y < 576;

@@ -22,34 +22,34 @@ void checkUpright(const OrbitCamera& camera) {
     CHECK(glm::dot(down, kView.up) < 0.0);
 }
 
-TEST_CASE(
-    "what is under the pointer stays there while one orbits and nears it, and follows it where one moves; "
-    "the camera stays upright") {
+TEST_CASE("what is under the pointer stays there or follows it, and the camera stays upright") {
     CameraMover mover;
     mover.set(OrbitCamera(kView));
     CHECK(glm::distance(mover.camera().centre(), kView.look) < 1e-9);
     const double focal_px = eyeOf(mover.camera()).intrinsics.fx;
     const glm::dvec2 start = pixelOf(eyeOf(mover.camera()), kUnder), step(70.0, -40.0);
-    mover.beginDrag(CameraMover::Drag::kOrbit, start, kUnder, focal_px, kSizePx.y);
-    mover.dragTo(start + step);
+    const auto isUnder = [&](const glm::dvec2& place) {
+        return glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), place) < 1e-6;
+    };
+    const auto drag = [&](CameraMover::Drag how, const glm::dvec2& by) {
+        mover.beginDrag(how, start, kUnder, focal_px, kSizePx.y);
+        mover.dragTo(start + by);
+    };
+    drag(CameraMover::Drag::kOrbit, step);
     checkUpright(mover.camera());
-    CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start) < 1e-6);
+    CHECK(isUnder(start));
     CHECK(glm::distance(mover.camera().position(), kView.eye) > 0.5);
     mover.turnWheel(3.0, kUnder);
-    CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start) < 1e-6);
+    CHECK(isUnder(start));
     CHECK(mover.camera().distance() < 0.7 * glm::distance(kView.eye, kView.look));
-    mover.beginDrag(CameraMover::Drag::kPan, start, kUnder, focal_px, kSizePx.y);
-    mover.dragTo(start + step);
-    CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start + step) < 1e-6);
+    drag(CameraMover::Drag::kPan, step);
+    CHECK(isUnder(start + step));
     // It is never upside down.
-    mover.beginDrag(CameraMover::Drag::kOrbit, start, kUnder, focal_px, kSizePx.y);
-    mover.dragTo(start + glm::dvec2(0.0, 5000.0));
+    drag(CameraMover::Drag::kOrbit, {0.0, 5000.0});
     checkUpright(mover.camera());
 }
 
-TEST_CASE(
-    "a way ends where it leads, the shorter way round; keys end it; a new centre and a whole scene come into "
-    "the middle") {
+TEST_CASE("a way ends where it leads, the shorter way round; a new centre comes into the middle") {
     CameraMover mover;
     OrbitCamera from(kView);
     from.turn(3.0, 0.0);
@@ -73,9 +73,7 @@ TEST_CASE(
     CHECK(std::asin(2.0 / whole.distance()) == doctest::Approx(0.5));
 }
 
-TEST_CASE(
-    "what lies in the plane of the screen is at one pixel for both eyes, what is nearer is crossed; parts "
-    "show each its eye") {
+TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, what is nearer is crossed") {
     const OrbitCamera camera(kView);
     for (const double plane : {1.0, 2.0}) {
         const WindowSight sight{WindowStereo::kSideBySide, 0.05, plane, 1.0};
@@ -104,9 +102,7 @@ TEST_CASE(
     CHECK_FALSE(partAt(partsOf(WindowStereo::kMono, {100, 60}), {100, 30}).has_value());
 }
 
-TEST_CASE(
-    "pictures in motion have fewer pixels where the device is slow, and do not change their size for a "
-    "little") {
+TEST_CASE("pictures in motion are smaller on a slow device, and do not change their size for a little") {
     MotionScale slow, fast;
     for (int i = 0; i < 50; ++i) {
         slow.measure(slow.scale(), 100.0 * slow.scale() * slow.scale());

@@ -1,5 +1,4 @@
-// Facts about options: how the command line overrides the config, what is refused in either, and the
-// documents.
+// Facts about options: what overrides what, what is refused, and the documents.
 #include "app/command_line/option_documents.h"
 #include "app/options/camera_options.h"
 #include "app/options/modes.h"
@@ -16,14 +15,12 @@ const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 RunOptions view(const std::string& options) { return parse<ViewOptions>("view a " + options).run; }
 
 void checkRefused(const std::string& line, ExitCode code, const std::string& part) {
-    INFO("line ", line, ", part ", part);
-    try {
+    const Outcome outcome = tried([&] {
         parseLine(line);
-        FAIL_CHECK("is taken");
-    } catch (const Error& error) {
-        CHECK(error.code() == code);
-        CHECK_MESSAGE(std::string(error.what()).find(part) != std::string::npos, error.what());
-    }
+        return std::string("is taken");
+    });
+    INFO(line, ": ", outcome.output, outcome.errors);
+    CHECK(these(outcome.exit_code, contains(outcome.errors, part)) == these(static_cast<int>(code), true));
 }
 
 // The settings that a command line gives: one key and value per line.
@@ -120,20 +117,16 @@ TEST_CASE("a text that is empty, a camera that spans no view and a headset that 
                          doctest::Contains("nobody.toml: not found"), Error);
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "the documents of the options are those that the program makes, and every key of the "
-                  "default config is taken") {
+TEST_CASE_FIXTURE(AtWork, "the documents of the options are the program's, and every default key is taken") {
     CHECK_MESSAGE(textIn(kSource / "docs/options.md") == documentOf("markdown"),
                   "run `binosplat document markdown > docs/options.md`");
     const std::string text = textIn(kSource / "configs/default.toml");
     CHECK_MESSAGE(text == documentOf("config"), "run `binosplat document config > configs/default.toml`");
-    // The file has every key of a config, as a comment if the key has no default; uncommented, each key is
-    // accepted.
+    // The file has every key, as a comment if it has no default; uncommented, each is accepted.
     const std::string one = (work.path / "one.toml").string();
     std::size_t keys = 0;
-    std::istringstream lines(text);
     std::string table, placement;
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string line : linesIn(text)) {
         if (line.starts_with('[')) { table = line.substr(0, line.find(']') + 1); }
         const bool is_comment = line.starts_with("# ");
         if (table.empty() || line.starts_with('[') || line.empty()) { continue; }
@@ -156,7 +149,7 @@ TEST_CASE_FIXTURE(AtWork,
     writeText(one, "[view]\n" + placement);
     CHECK(readViewSettings(parse<ViewOptions>("view a --config " + one).tables, {})
               .scene_from_room.has_value());
-    CHECK(text.find("\n# mode = \"predicted\"") != std::string::npos);
+    CHECK(contains(text, "\n# mode = \"predicted\""));
     // The values in the file are the defaults.
     const RunOptions none = renderOptions(""),
                      file = renderOptions("--config " + (kSource / "configs/default.toml").string());
@@ -166,30 +159,7 @@ TEST_CASE_FIXTURE(AtWork,
     CHECK(none.stereo.mode == Mode::kPredicted);
 }
 
-TEST_CASE(
-    "bash is told of files for the options that take one, of names for those that are one of a few, and of "
-    "nothing for others") {
-    const std::string bash = documentOf("bash"), files = "COMPREPLY=($(compgen -f -- \"$word\"));";
-    const auto names = [](const char* choices) {
-        return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\"));", choices);
-    };
-    std::map<std::string, std::string> expected{{"render:--path-axes", names("openxr unity")},
-                                                {"view:--dominant", names("left right")}};
-    for (const std::string& option :
-         wordsIn("render:--path render:--out render:--cameras bench:--motion bench:--photos compare:--lpips "
-                 "scene:--out view:--config view:--shaders view:--simulate")) {
-        expected[option] = files;
-    }
-    for (const char* option : {"render:--rate", "render:--headset"}) { expected[option] = ""; }
-    for (const auto& [option, completed] : expected) {
-        CHECK_MESSAGE(
-            bash.find(fmt::format("        {}) {} return ;;\n", option, completed)) != std::string::npos,
-            option);
-    }
-}
-
-TEST_CASE_FIXTURE(
-    AtWork, "splats go by depth or by distance: as the command line says, the config, or else the scene") {
+TEST_CASE_FIXTURE(AtWork, "splats go by depth or distance, as the options, the config or the scene say") {
     writeText(work.path / "a.toml", "[stereo]\norder = \"distance\"\n");
     const std::string file = "--config " + (work.path / "a.toml").string();
     const auto orderOf = [](const std::string& options, Order usual) {

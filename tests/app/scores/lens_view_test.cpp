@@ -102,10 +102,12 @@ TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of 
     CHECK(glm::length(colourOf(flat, middle.x, 20) - glm::vec3(0.25f, 0.5f, 0.75f)) < 1e-6f);
     CHECK(colourOf(flat, 0, 0) == glm::vec3(0.0f));
     // At 45 degrees, 256 * tan(45) / tan(48) = 230 pixels of the flat picture from its middle.
-    const Image ramp = lens.view.show(
-        makePicture({512, 512},
-                    [](std::uint32_t x, std::uint32_t) { return glm::vec3(static_cast<float>(x) / 512.0f); }),
-        kLeft);
+    const auto columns = [&](const auto& grey) {
+        return lens.view.show(
+            makePicture({512, 512}, [&](std::uint32_t x, std::uint32_t) { return glm::vec3(grey(x)); }),
+            kLeft);
+    };
+    const Image ramp = columns([](std::uint32_t x) { return static_cast<float>(x) / 512.0f; });
     const double focal_px = wideEyes()[0].intrinsics.fx;
     for (const double angle_deg : {-45.0, -20.0, 20.0, 45.0}) {
         const auto at = static_cast<std::uint32_t>(middle.x + focal_px * glm::radians(angle_deg));
@@ -113,12 +115,8 @@ TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of 
         CHECK(colourOf(ramp, at, middle.y).x ==
               doctest::Approx(0.5 + (place_px - 0.5) / 512.0).epsilon(0.001));
     }
-    // Stripes one pixel wide: at 45 degrees a pixel of the lens covers two of them, so little of them is
-    // left.
-    const Image fine = lens.view.show(
-        makePicture({512, 512},
-                    [](std::uint32_t x, std::uint32_t) { return glm::vec3(x % 2 == 0 ? 0.0f : 1.0f); }),
-        kLeft);
+    // Stripes one pixel wide: little of them is left where a pixel of the lens covers two of them.
+    const Image fine = columns([](std::uint32_t x) { return x % 2 == 0 ? 0.0f : 1.0f; });
     const auto contrastFrom = [&](std::uint32_t first) {
         double sum = 0.0;
         for (std::uint32_t x = first; x < first + 16; ++x) {
@@ -131,25 +129,22 @@ TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of 
     CHECK_THROWS_AS(lens.view.show(makeGrey({512, 511}, 3, 0.5f), kLeft), Error);
 }
 
-TEST_CASE("of equal pictures nothing is seen, whatever lies beyond the lens's border") {
-    const Lens lens;
+TEST_CASE_FIXTURE(Lens, "of equal pictures nothing is seen, whatever lies beyond the lens's border") {
     const Image full = draw(nowhere, shifted);
-    const VisibleErrors none = lens.find(lens.show(full, full), full);
+    const VisibleErrors none = find(show(full, full), full);
     CHECK(!none.tile_squares.empty());
     CHECK(std::ranges::all_of(none.tile_squares, [](float square) { return square == 0.0f; }));
     CHECK((none.badShare() == 0.0 && none.edge == 0.0 && none.seam == 0.0 && none.rival == 0.0));
     CHECK(worstTiles(none.tile_squares, 0.001) == 0.0);
 }
 
-TEST_CASE(
-    "an error in the middle counts through the lens as without one, at the border less, or not at all") {
-    const Lens lens;
+TEST_CASE_FIXTURE(Lens, "an error in the middle counts through the lens as without one, at the border less") {
     const Image full = draw(nowhere, shifted), middle = draw(inTheMiddle, shifted),
                 border = draw(atTheBorder, shifted);
     const VisibleErrors flat_middle = findVisibleErrors({middle, middle}, {full, full}),
                         flat_border = findVisibleErrors({border, border}, {full, full});
-    const VisibleErrors seen_middle = lens.find(lens.show(middle, middle), full),
-                        seen_border = lens.find(lens.show(border, border), full);
+    const VisibleErrors seen_middle = find(show(middle, middle), full),
+                        seen_border = find(show(border, border), full);
     const auto badTiles = [](const VisibleErrors& errors) {
         return errors.badShare() * static_cast<double>(errors.tile_squares.size());
     };
@@ -165,7 +160,7 @@ TEST_CASE(
     // Less than a hundredth of this contrast is left there, so nobody notices it.
     const auto faint = [](std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + 0.02f; };
     const auto worst = [&](const Image& picture) {
-        return worstTiles(lens.find(lens.show(picture, picture), full).tile_squares, 0.001);
+        return worstTiles(find(show(picture, picture), full).tile_squares, 0.001);
     };
     CHECK(worst(draw(atTheBorder, faint)) == 0.0);
     CHECK(worst(draw(inTheMiddle, faint)) > 1e-4);
@@ -220,14 +215,13 @@ TEST_CASE("blur in one eye alone is rivalry, in both eyes none, and canted eyes 
     }
 }
 
-TEST_CASE("lenses that have no middle, and sights of another size, are refused") {
+TEST_CASE_FIXTURE(Lens, "lenses that have no middle, and sights of another size, are refused") {
     std::array<Eye, 2> eyes = wideEyes();
     CHECK_THROWS_AS(LensView(eyes, {kAhead, -kAhead}), Error);
     eyes[1].world_from_camera.orientation = glm::angleAxis(3.14159265, kAhead);
     CHECK_THROWS_AS(LensView(eyes, {kAhead, kAhead}), Error);
-    const Lens lens;
     const Image full = draw(nowhere, shifted);
-    CHECK_THROWS_AS(findSeenErrors({full, full}, {full, full}, lens.sights), Error);
+    CHECK_THROWS_AS(findSeenErrors({full, full}, {full, full}, sights), Error);
 }
 
 }  // SUITE(lens_view)

@@ -32,14 +32,14 @@ inline std::vector<float> makeLpipsWeights(unsigned seed) {
     return values;
 }
 
-inline void writeFloats(const std::filesystem::path& file, const std::vector<float>& values) {
+inline void writeFloats(const fs::path& file, const std::vector<float>& values) {
     std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(values.data()),
                static_cast<std::streamsize>(values.size() * sizeof(float)));
 }
 
-inline std::vector<float> readFloats(const std::filesystem::path& file) {
-    std::vector<float> values(std::filesystem::file_size(file) / sizeof(float));
+inline std::vector<float> readFloats(const fs::path& file) {
+    std::vector<float> values(fs::file_size(file) / sizeof(float));
     std::ifstream(file, std::ios::binary)
         .read(reinterpret_cast<char*>(values.data()),
               static_cast<std::streamsize>(values.size() * sizeof(float)));

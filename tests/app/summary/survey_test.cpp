@@ -1,5 +1,4 @@
-// Facts about counts in a scene: splats that cost more than they show, floaters, and ways to take less
-// memory.
+// Facts about counts in a scene: floaters, splats that cost more than they show, and what to cut.
 #include "app/summary/survey.h"
 #include "tests/suite.h"
 

@@ -11,27 +11,25 @@ namespace binosplat::test {
 // A folder for each test case, removed afterwards.
 class Folder {
 public:
-    Folder()
-        : path_(std::filesystem::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
-        std::filesystem::create_directories(path_);
+    Folder() : path_(fs::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
+        fs::create_directories(path_);
     }
-    ~Folder() { std::filesystem::remove_all(path_); }
+    ~Folder() { fs::remove_all(path_); }
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
     [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
         // Some file systems wait for the disk when a file is truncated and rewritten.
-        std::filesystem::remove(file(name));
+        fs::remove(file(name));
         std::ofstream(file(name), std::ios::binary) << bytes;
         return file(name);
     }
     [[nodiscard]] std::ptrdiff_t fileCount() const {
-        return std::distance(std::filesystem::directory_iterator(path_),
-                             std::filesystem::directory_iterator());
+        return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
     }
 
 private:
-    std::filesystem::path path_;
+    fs::path path_;
 };
 // For facts that use one: TEST_CASE_FIXTURE(InFolder, "...").
 struct InFolder {
@@ -160,16 +158,6 @@ inline void checkProgress(std::size_t times, const std::function<void(const Prog
     }
 }
 
-// A message with the backslashes that Windows writes in paths turned into slashes.
-inline std::string withSlashes(std::string text) {
-    if constexpr (std::filesystem::path::preferred_separator != '/') {
-        std::replace(text.begin(), text.end(), '\\', '/');
-    }
-    return text;
-}
-inline bool contains(const std::string& text, const std::string& part) {
-    return withSlashes(text).find(withSlashes(part)) != std::string::npos;
-}
 // There is exactly one line, and it contains this part.
 inline void checkSays(const std::vector<std::string>& lines, const std::string& part) {
     REQUIRE(lines.size() == 1);
