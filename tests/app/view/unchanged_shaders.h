@@ -8,9 +8,9 @@ namespace binosplat::test {
 
 // Writes the compiler into `folder`, which must come first in PATH. For each shader, the shell lines `then`
 // run afterwards; they can use its $name and its file, $last.
-inline void writeCompilerOfChangedShaders(const std::filesystem::path& folder, const std::string& then = "") {
-    std::filesystem::create_directory(folder);
-    const std::filesystem::path compiler = folder / "glslangValidator";
+inline void writeCompilerOfChangedShaders(const fs::path& folder, const std::string& then = "") {
+    fs::create_directory(folder);
+    const fs::path compiler = folder / "glslangValidator";
     std::ofstream(compiler)
         << "#!/bin/sh\nfor word; do case $last in -o) out=$word ;; esac; last=$word; done\n"
            "name=$(basename $last .comp)\n"
@@ -18,7 +18,7 @@ inline void writeCompilerOfChangedShaders(const std::filesystem::path& folder, c
            "/shaders/embedded/'$name.spv $out; else PATH=${PATH#*:} glslangValidator \"$@\"; fi\n"
            "status=$?\n" +
                then + "exit $status\n";
-    std::filesystem::permissions(compiler, std::filesystem::perms::owner_all);
+    fs::permissions(compiler, fs::perms::owner_all);
 }
 
 }  // namespace binosplat::test

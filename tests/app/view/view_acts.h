@@ -1,6 +1,7 @@
 // A wearer of the simulated headset who does one thing after another.
 #pragma once
 
+#include "app/view/scenes/viewpoints.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/app/view/view_runs.h"
 
@@ -27,8 +28,7 @@ inline Panel panelOf(const ViewRun& run, std::size_t frame) {
 // Clear of all widgets on the pages View and Method.
 inline const glm::dvec2 kBeside(0.9, 0.95);
 
-// Poses of hands: one looks at a place, the other is 30 cm in front of a place on the panel and points
-// straight at it.
+// Poses of hands: one looks at a place, the other points at one on the panel from 30 cm before it.
 inline std::string lookingAt(const glm::dvec3& at, const glm::dvec3& look) {
     return fmt::format("position {} {} {} look {} {} {}", at.x, at.y, at.z, look.x, look.y, look.z);
 }
@@ -79,8 +79,14 @@ public:
         poses_[who] = pose;
         return wait(seconds + 0.001);
     }
-    // These three go on while time passes. Inputs are named as in "right trigger", a stick or pad as in "left
-    // thumbstick".
+    Acts& head(const std::string& pose, double seconds = 0.02) { return move("head", pose, seconds); }
+    Acts& left(const std::string& pose, double seconds = 0.02) {
+        return move("controller left", pose, seconds);
+    }
+    Acts& right(const std::string& pose, double seconds = 0.02) {
+        return move("controller right", pose, seconds);
+    }
+    // These three go on while time passes. Inputs are named as "right trigger" or "left thumbstick".
     Acts& hold(const std::string& input, double seconds) {
         text_ += fmt::format("press {} {:.3f} {:.3f}\n", input, now_s, now_s + seconds);
         return *this;
@@ -103,15 +109,14 @@ public:
         return hold(input, seconds).wait(2.0 * seconds);
     }
     // Points the right hand at a place on the panel.
-    Acts& point(const glm::dvec2& share) {
-        return move("controller right", pointingAt(panel, share)).wait(0.03);
-    }
+    Acts& point(const glm::dvec2& share) { return right(pointingAt(panel, share)).wait(0.03); }
     Acts& click(const glm::dvec2& share, const std::string& input = "right trigger") {
         return point(share).press(input);
     }
 
     // The whole script, with the wearer leaving now.
     [[nodiscard]] std::string script() const { return text_ + fmt::format("at {:.3f} exit\n", now_s); }
+    operator std::string() const { return script(); }
 
 private:
     std::string text_;
@@ -131,11 +136,8 @@ inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std
     const auto numbers = [](const glm::dvec3& v) {
         return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z);
     };
-    const Outcome rendered = work.run(
-        fmt::format("render builtin:fence --order distance --out expected --eye {} --look {} --up {} {}",
-                    numbers(eye), numbers(look), numbers(up), arguments));
-    INFO(rendered.errors);
-    REQUIRE(rendered.exit_code == 0);
+    work.go(fmt::format("render builtin:fence --order distance --out expected --eye {} --look {} --up {} {}",
+                        numbers(eye), numbers(look), numbers(up), arguments));
     for (const int side : {kLeft, kRight}) {
         const Image expected =
             readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
@@ -151,23 +153,11 @@ inline const std::string kWall = "builtin:slanted-wall --load-first --hide-hands
                          kOneSplat = "builtin:one-splat --load-first --hide-hands";
 
 // Where the wearer was when *Keep this one* was clicked, in the axes of the only scene with kept places.
-struct KeptPlace {
-    glm::dvec3 eye, look, up;
-};
-inline std::vector<KeptPlace> keptPlaces(const Workplace& work) {
-    std::vector<KeptPlace> kept;
-    for (const auto& file :
-         std::filesystem::directory_iterator(work.base / "config" / "binosplat" / "scenes")) {
+inline std::vector<View> keptPlaces(const Workplace& work) {
+    std::vector<View> kept;
+    for (const auto& file : fs::directory_iterator(work.base / "config/binosplat/scenes")) {
         if (!file.path().string().ends_with(".viewpoints.json")) { continue; }
-        std::ifstream text(file.path());
-        const nlohmann::json document = nlohmann::json::parse(text);
-        for (const nlohmann::json& viewpoint : document.at("viewpoints")) {
-            const auto point = [&](const char* name) {
-                const auto at = viewpoint.at(name).get<std::array<double, 3>>();
-                return glm::dvec3(at[0], at[1], at[2]);
-            };
-            kept.push_back({point("eye"), point("look"), point("up")});
-        }
+        for (const Viewpoint& viewpoint : readViewpoints(file)) { kept.push_back(viewpoint.view); }
     }
     return kept;
 }

@@ -1,28 +1,22 @@
-// Facts about two scenes of one place: a held button shows the other one in a headset; a curtain and a held
-// key do in a window.
+// Facts about two scenes of one place, of which a held button shows the other one.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_compare) {
 
-// Both from one place. Alike enough for a wearer to compare them, and unlike enough for a test to tell them
-// apart.
+// Both from one place: alike enough for a wearer to compare them, and unlike enough for a test.
 const std::string kFirst = "builtin:fence", kSecond = "builtin:slanted-wall";
 const std::string kPlace = " --eye 0,0,-1 --look 0,0,3 --up 0,-1,0";
 
-TEST_CASE(
-    "while a button is held the other scene is seen from the same place, at once and whole; the comparison "
-    "ends where it is told to") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "while a button is held the other scene is seen from there, at once and whole") {
     // By then the lines in front of the eyes have gone. The head turns between the two times.
     Acts acts("rate 20\nsize 96 96\nframes from 140 to 220\n");
     acts.wait(7.2 - acts.now_s);
-    acts.hold("right a", 0.4).wait(0.6).move("head", "position 0.1 1.55 0.1 turn 20 5", 0.3).wait(0.1);
+    acts.hold("right a", 0.4).wait(0.6).head("position 0.1 1.55 0.1 turn 20 5", 0.3).wait(0.1);
     acts.hold("left x", 0.4).wait(0.6);
     const std::string headset = " --load-first --hide-panel --hide-hands --axes view" + kPlace;
-    const ViewRun run = runClean(work, "both", acts.script(),
-                                 kFirst + " --compare " + kSecond + " --mode temporal" + headset);
-    const ViewRun first = runClean(work, "first", acts.script(), kFirst + " --mode shared" + headset);
-    const ViewRun second = runClean(work, "second", acts.script(), kSecond + " --mode shared" + headset);
+    const ViewRun run = runClean(work, acts, kFirst + " --compare " + kSecond + " --mode temporal" + headset);
+    const ViewRun first = runClean(work, acts, kFirst + " --mode shared" + headset);
+    const ViewRun second = runClean(work, acts, kSecond + " --mode shared" + headset);
     checkOrder(run, {"compares " + kFirst + " with " + kSecond, "hold X or A", "shows " + kSecond,
                      "shows " + kFirst, "shows " + kSecond, "shows " + kFirst});
     std::size_t cuts = 0, of_second = 0, frames = 0;
@@ -40,8 +34,8 @@ TEST_CASE(
         CHECK(std::min(as_first, as_second) < 25.0);
         CHECK(compare(run.eye(frame, kRight), (is_second ? second : first).eye(frame, kRight)).psnrDb() >
               (is_cut ? 50.0 : 30.0));
-        cuts += is_cut ? 1 : 0;
-        of_second += is_second ? 1 : 0;
+        cuts += is_cut;
+        of_second += is_second;
         ++frames;
     }
     CHECK(cuts == 4);
@@ -49,27 +43,20 @@ TEST_CASE(
     CHECK(frames > 30);
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "the panel compares with the scene chosen next, keeps the other one in sight, and ends it; "
-                  "one that is broken leaves one alone") {
+TEST_CASE_FIXTURE(AtWork, "the panel compares with the scene chosen next, and ends the comparison") {
     const fs::path scenes = work.path / "scenes";
     fs::create_directory(scenes);
-    std::ofstream(scenes / "broken.ply") << "ply\nnonsense\n";
+    work.write("scenes/broken.ply", "ply\nnonsense\n");
     work.go("scene one-splat --out scenes/one.ply");
     work.go("scene slanted-wall --out scenes/wall.ply");
-    const std::string folder = scenes.string();
     Acts acts("rate 45\nsize 64 64\nframes none\n");
     acts.wait(1.0);
-    const auto click = [&](const std::string& widget) {
-        acts.point(placeOfScene(widget, folder)).wait(0.25).press("right trigger", 0.3).wait(0.4);
-    };
     for (const char* widget : {"Compare", "broken.ply", "Compare", "wall.ply", "Other", "Other", "Compare"}) {
-        click(widget);
+        acts.point(placeOfScene(widget, scenes.string())).wait(0.25).press("right trigger", 0.3).wait(0.4);
     }
-    const ViewRun run = runClean(work, "panel", acts.script(),
-                                 "scenes/one.ply --load-first --mode shared --hide-hands" +
-                                     withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
-                                 kValidated + " SIMULATED_OPENXR_CLOCK=real");
+    const ViewRun run = runClean(
+        work, acts, "scenes/one.ply --load-first --mode shared --hide-hands" + withConfig(work, kScenesPage),
+        kValidated + " SIMULATED_OPENXR_CLOCK=real");
     INFO(run.outcome.output);
     const std::string wall = (scenes / "wall.ply").string();
     checkOrder(run, {"shows scenes/one.ply", "to compare with scenes/one.ply",
@@ -77,11 +64,10 @@ TEST_CASE_FIXTURE(AtWork,
                      "shows " + wall, "shows scenes/one.ply", wall + " is no longer compared with"});
 }
 
-TEST_CASE("where two scenes do not fit together, a line says so, and the first one stays") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "where two scenes do not fit together, a line says so, and the first one stays") {
     work.go("scene atelier --splats 20000 --out many.ply");
     const ViewRun run = runClean(
-        work, "small", "rate 45\nsize 64 64\nframes none\nat 0.4 exit\n",
+        work, "rate 45\nsize 64 64\nframes none\nat 0.4 exit\n",
         "many.ply --compare builtin:atelier --load-first --mode mono --hide-hands --memory-limit 24");
     CHECK(run.says(
         "many.ply and builtin:atelier do not fit into the device's memory together: the first one stays"));

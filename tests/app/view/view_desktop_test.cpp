@@ -1,20 +1,14 @@
-// Facts about the window without a headset: what mouse and keys do in it, what it shows, and that it idles
-// when nothing changes.
+// Facts about the window without a headset: what mouse and keys do, what it shows, that it rests.
 #include "tests/app/view/view_window.h"
 
 SUITE(view_desktop) {
 
-// The number in a line "frame 12: help".
-std::uint64_t pictureOf(const std::string& line) {
-    return std::stoull(line.substr(line.rfind("frame ") + 6));
-}
-
-class Window {
+class Window : public Program {
 public:
     Window(const Workplace& work, const std::string& options, const std::string& environment = "")
-        : program_((picturesInto(work), work.path),
-                   "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
-        REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
+        : Program((picturesInto(work), work.path),
+                  "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
+        await("shows builtin:slanted-wall");
         hands(
             "search --sync --onlyvisible --name '^builtin:slanted-wall - binosplat$' mousemove --window %1 "
             "20 20");
@@ -23,15 +17,13 @@ public:
     // number of its latest picture.
     std::uint64_t help() {
         hands("key h");
-        const std::string lines = program_.waitFor("help");
-        REQUIRE(lines != "");
-        return pictureOf(lines);
+        const std::string lines = await("help");
+        return frameOf(lines.substr(lines.rfind("frame ")));
     }
     // Waits until the window shows all pixels: only then does it write a picture that was requested.
     void rest() {
         hands("key p");
-        picture_ = program_.waitFor("/pictures/");
-        REQUIRE(picture_ != "");
+        picture_ = await("/pictures/");
         picture_ = picture_.substr(picture_.rfind(": picture ") + 10);
         picture_.pop_back();
     }
@@ -41,14 +33,13 @@ public:
         help();
         rest();
         hands(moveTo(place) + "click --repeat 2 --delay 20 1");
-        const std::string line = program_.waitFor("the centre is ");
-        REQUIRE(line != "");
+        const std::string line = await("the centre is ");
         glm::dvec3 point(0.0);
         REQUIRE(std::sscanf(line.substr(line.find("centre is")).c_str(), "centre is %lf, %lf, %lf", &point.x,
                             &point.y, &point.z) == 3);
-        REQUIRE(program_.waitFor("arrived") != "");
+        await("arrived");
         hands("key r");
-        REQUIRE(program_.waitFor("arrived") != "");
+        await("arrived");
         rest();
         return point;
     }
@@ -67,36 +58,19 @@ public:
         hands(moveTo(glm::dvec2(1280.0 - size.x, 0.0) + shareOf(sketch.draw().places, widget) * size) +
               "click 1");
     }
-    std::string waitFor(const std::string& words) {
-        const std::string lines = program_.waitFor(words);
-        INFO(words << ": " << program_.said());
-        REQUIRE(lines != "");
-        return lines;
-    }
-    // It ends without an error.
-    void checkEnd() {
+    void end() {
         hands("key Escape");
-        CHECK(program_.exitCode() == 0);
-        INFO(program_.said());
-        CHECK(program_.said().find(" pictures in the window, ") != std::string::npos);
-        CHECK(these(program_.said().find("VUID"), program_.said().find("SYNC")) ==
-              these(std::string::npos, std::string::npos));
+        checkEnd(" pictures in the window, ");
     }
-    [[nodiscard]] Program& program() { return program_; }
 
 private:
-    Program program_;
     std::string picture_;
 };
 
-TEST_CASE(
-    "without a runtime the scene is in a window, as render draws it; mouse and wheel keep hold of what is "
-    "seen; it rests") {
+TEST_CASE_FIXTURE(AtWork, "without a runtime the scene is in a window, as render draws it, and rests") {
     if (!haveScreen()) { return; }
-    const Workplace work;
     Window window(work, "--hide-panel", "XR_RUNTIME_JSON=/nonexistent/runtime.json ");
-    CHECK(window.program().said().find(
-              "\nthe scene is shown in a window; no headset: no OpenXR runtime found") != std::string::npos);
+    CHECK(contains(window.said(), "\nthe scene is shown in a window; no headset: no OpenXR runtime found"));
 
     const glm::dvec2 place(500.0, 300.0), beside(620.0, 340.0);
     const glm::dvec3 start = window.seenAt(place);
@@ -119,40 +93,33 @@ TEST_CASE(
 
     // Hides the panel, which the help had brought up.
     hands("key Tab");
-    REQUIRE(window.program().waitFor("panel = false") != "");
-    REQUIRE(work.run("render builtin:slanted-wall --mode mono --order distance --size 1280x720 --fov-x 60 "
-                     "--out drawn")
-                .exit_code == 0);
+    window.await("panel = false");
+    work.go(
+        "render builtin:slanted-wall --mode mono --order distance --size 1280x720 --fov-x 60 "
+        "--out drawn");
     Image screen = desk().screen.picture();
     const Image drawn = readPicture(work.path / "drawn" / "mono.png");
     CHECK(compare(partOf(screen, {0, 0}, {1280, 720}), drawn).psnrDb() > 40.0);
     window.rest();
     CHECK(compare(readPicture(window.picture()), drawn).psnrDb() > 45.0);
-    window.checkEnd();
+    window.end();
 }
 
-TEST_CASE(
-    "in the window a picture is taken beside its frames: they wait for the one that shows all pixels, and "
-    "make nothing, nor do those in motion, which are coarse where the device is slow") {
+TEST_CASE_FIXTURE(AtWork,
+                  "in the window a picture is taken beside its frames, which make nothing, in motion too") {
     if (!haveScreen()) { return; }
-    const Workplace work;
+    // Frames in motion are coarse where the device is slow.
     Window window(work, "--desktop --hide-panel",
                   withFaults("BINOSPLAT_FAULT_WAITS=waits.txt BINOSPLAT_FAULT_LOAD=0:100 ", ""));
-    const auto linesOf = [&] {
-        std::vector<std::string> lines;
-        std::ifstream file(work.path / "waits.txt");
-        for (std::string line; std::getline(file, line);) { lines.push_back(line); }
-        return lines;
-    };
     window.help();
     window.help();
     window.rest();  // at its full size
-    const std::size_t before = linesOf().size();
+    const std::size_t before = linesIn(work.bytesOf("waits.txt")).size();
     window.rest();
     hands("keydown w sleep 0.3 keyup w");
     window.rest();
     window.help();
-    const std::vector<std::string> lines = linesOf();
+    const std::vector<std::string> lines = linesIn(work.bytesOf("waits.txt"));
     REQUIRE(lines.size() > before);
     for (std::size_t i = before; i < lines.size(); ++i) {
         std::istringstream words(lines[i].substr(lines[i].find(' ') + 1));
@@ -160,18 +127,15 @@ TEST_CASE(
             CHECK_MESSAGE(kind.starts_with("fence-of-"), lines[i]);
         }
     }
-    window.checkEnd();
+    window.end();
 }
 
-TEST_CASE(
-    "a window whose surface is lost goes on, and in another size, too; for crossed eyes both pictures change "
-    "places") {
+TEST_CASE("a window whose surface is lost goes on; for crossed eyes both pictures change places") {
     if (!haveScreen()) { return; }
     std::vector<Image> left, right;
     for (const char* stereo : {"side-by-side", "cross-eyed"}) {
         const Workplace work;
-        std::ofstream(work.path / "stereo.toml")
-            << fmt::format("[view]\npanel = false\nwindow-stereo = \"{}\"\n", stereo);
+        work.write("stereo.toml", fmt::format("[view]\npanel = false\nwindow-stereo = \"{}\"\n", stereo));
         Window window(work, "--desktop --config stereo.toml",
                       withFaults("BINOSPLAT_FAULT=present:2:surface-lost-once", "") + " ");
         window.help();
@@ -179,110 +143,91 @@ TEST_CASE(
             "search --onlyvisible --name '^builtin:slanted-wall - binosplat$' windowsize --sync %1 900 600");
         window.help();
         hands("key Tab");
-        REQUIRE(window.program().waitFor("panel = false") != "");
+        window.await("panel = false");
         window.rest();
         Image screen = desk().screen.picture();
         left.push_back(partOf(screen, {0, 0}, {450, 600}));
         right.push_back(partOf(screen, {450, 0}, {900, 600}));
-        window.checkEnd();
+        window.end();
     }
     CHECK(compare(left[0], right[1]).psnrDb() > 35.0);
     CHECK(compare(right[0], left[1]).psnrDb() > 35.0);
     CHECK(compare(left[0], right[0]).psnrDb() < 30.0);
 }
 
-TEST_CASE(
-    "a runtime that hangs keeps no window from opening; what is dropped on one that nobody sees is drawn "
-    "once somebody does") {
+TEST_CASE_FIXTURE(AtWork, "a runtime that hangs keeps no window from opening; a hidden one draws later") {
     if (!haveScreen()) { return; }
-    const Workplace work;
     work.go("scene one-splat --out one.ply");
-    Window window(
-        work, "--hide-panel",
-        "XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-        "/openxr' BINOSPLAT_XR_FAULT=xrCreateInstance:hang XR_RUNTIME_JSON='" BINOSPLAT_BUILD
-        "/bin/simulated_runtime.json' ");
-    CHECK(window.program().said().find(
-              "the scene is shown in a window; no headset: the OpenXR runtime does not answer\n") !=
-          std::string::npos);
+    Window window(work, "--hide-panel",
+                  withXrFaults("BINOSPLAT_XR_FAULT=xrCreateInstance:hang", "") +
+                      " XR_RUNTIME_JSON='" BINOSPLAT_BUILD "/bin/simulated_runtime.json' ");
+    CHECK(contains(window.said(),
+                   "the scene is shown in a window; no headset: the OpenXR runtime does not answer\n"));
     window.rest();
     const unsigned long number = numberOfWindow("^builtin:slanted-wall - binosplat$", "WINDOW");
     desk().connection.minimize(number, true);
     const std::uint64_t before = window.help();
     desk().connection.drop(number, {work.path / "one.ply"});
-    REQUIRE(window.program().waitFor("one.ply") != "");
+    window.await("one.ply");
     CHECK(window.help() == before);
     desk().connection.minimize(number, false);
     window.rest();
     CHECK(window.help() > before);
-    window.checkEnd();
+    window.end();
 }
 
-TEST_CASE(
-    "two ends and a number give the scene its true size; a viewpoint gets a name and a tour; what is set on "
-    "the panel is so the next "
-    "time") {
+TEST_CASE_FIXTURE(AtWork, "the true size, a viewpoint's name and the panel's settings are kept") {
     if (!haveScreen()) { return; }
-    const Workplace work;
     const fs::path kept = work.base / "config" / "binosplat";
     const glm::dvec2 one(200.0, 300.0), other(500.0, 360.0);
     {
         Window window(work, "--desktop");
         const glm::dvec3 from = window.seenAt(one), to = window.seenAt(other);
         window.click("True size", PanelPage::kView);
-        window.waitFor("click on one end");
+        window.await("click on one end");
         hands(moveTo(one) + "click 1");
-        window.waitFor("and now on its other end");
+        window.await("and now on its other end");
         hands(moveTo(other) + "click 1");
-        window.waitFor("as shown, it is ");
+        window.await("as shown, it is ");
         hands("key 2 period 5 9 BackSpace Return");
-        window.waitFor("saved as ");
-        const std::string text = textIn(kept / "scenes" / "slanted-wall.view.toml"),
-                          key = "metres-per-unit = ";
-        REQUIRE(text.find(key) != std::string::npos);
-        CHECK(std::stod(text.substr(text.find(key) + key.size())) ==
+        window.await("saved as ");
+        CHECK(savedOfWall(work, "metres-per-unit") ==
               doctest::Approx(2.5 / glm::distance(from, to)).epsilon(0.01));
 
         window.click("Both eyes", PanelPage::kView);
-        window.waitFor("picture-both-eyes = true");
+        window.await("picture-both-eyes = true");
         window.rest();
         CHECK(readPicture(window.picture()).size_px == glm::uvec2(2 * 743, 720));
 
         window.click("Scenes", PanelPage::kView);
-        window.waitFor("panel-page");
+        window.await("panel-page");
         for (const char* number : {"1", "2"}) {
             window.click("Keep this one", PanelPage::kScenes);
-            window.waitFor("this viewpoint is kept");
-            CHECK(textIn(kept / "scenes" / "slanted-wall.viewpoints.json")
-                      .find("your own " + std::string(number)) != std::string::npos);
+            window.await("this viewpoint is kept");
+            CHECK(contains(textIn(kept / "scenes/slanted-wall.viewpoints.json"),
+                           "your own " + std::string(number)));
         }
         window.click("Name", PanelPage::kScenes);
-        hands("key --repeat 12 BackSpace");
-        hands("type door");
-        hands("key Return");
-        window.waitFor("this viewpoint is called door");
+        for (const char* does : {"key --repeat 12 BackSpace", "type door", "key Return"}) { hands(does); }
+        window.await("this viewpoint is called door");
         window.click("Tour", PanelPage::kScenes);
-        window.waitFor("viewpoint 1 of 2: your own 1");
-        window.waitFor("viewpoint 2 of 2: door");
-        window.waitFor("the tour is over");
-        window.checkEnd();
+        for (const char* said :
+             {"viewpoint 1 of 2: your own 1", "viewpoint 2 of 2: door", "the tour is over"}) {
+            window.await(said);
+        }
+        window.end();
     }
-    CHECK(textIn(kept / "preferences.toml").find("\n[view]\npicture-both-eyes = true\n") !=
-          std::string::npos);
+    CHECK(contains(textIn(kept / "preferences.toml"), "\n[view]\npicture-both-eyes = true\n"));
     Window window(work, "--desktop --hide-panel");
     window.rest();
     CHECK(readPicture(window.picture()).size_px == glm::uvec2(2560, 720));
     hands("key 2");
-    window.waitFor("viewpoint 2 of 2: door");
-    window.checkEnd();
+    window.await("viewpoint 2 of 2: door");
+    window.end();
 }
 
-TEST_CASE(
-    "two scenes are left and right of a curtain that can be dragged; a held key shows the other one whole, "
-    "and in pictures; two that are "
-    "dropped are compared") {
+TEST_CASE_FIXTURE(AtWork, "two scenes are beside a curtain, and a held key shows the other one whole") {
     if (!haveScreen()) { return; }
-    const Workplace work;
     work.go("scene one-splat --out one.ply");
     work.go("scene fence --out fence.ply");
     const std::string view = " --eye 0,0,-1 --look 0,0,3 --up 0,-1,0";
@@ -294,7 +239,7 @@ TEST_CASE(
     const Image wall = draw("builtin:slanted-wall", "wall"), fence = draw("fence.ply", "fence");
     REQUIRE(compare(wall, fence).psnrDb() < 25.0);
     Window window(work, "--desktop --hide-panel --compare fence.ply" + view);
-    window.waitFor("compares builtin:slanted-wall with fence.ply");
+    window.await("compares builtin:slanted-wall with fence.ply");
     // Which part of the window is the one scene, and which is the other.
     const auto check = [&](const Image& image, std::uint32_t from, std::uint32_t to) {
         CAPTURE(from);
@@ -313,29 +258,29 @@ TEST_CASE(
     // Dragging moves the line alone.
     hands(moveTo({641.0, 200.0}));
     window.drag(1, {641.0, 200.0}, {320.0, 250.0});
-    window.waitFor("the curtain hangs at 25 %");
+    window.await("the curtain hangs at 25 %");
     window.rest();
     check(wall, 0, 314);
     check(fence, 326, 1280);
     hands("keydown c");
-    window.waitFor("shows fence.ply");
+    window.await("shows fence.ply");
     window.rest();
     check(fence, 0, 1280);
     CHECK(compare(readPicture(window.picture()), fence).psnrDb() > 45.0);
     hands("keyup c");
-    window.waitFor("the curtain is back");
+    window.await("the curtain is back");
     window.rest();
     check(wall, 0, 314);
 
     const unsigned long number = numberOfWindow("^builtin:slanted-wall . fence.ply - binosplat$", "WINDOW");
     desk().connection.drop(number, {work.path / "one.ply", work.path / "fence.ply"});
-    window.waitFor("compares " + (work.path / "one.ply").string() + " with " +
-                   (work.path / "fence.ply").string());
+    window.await("compares " + (work.path / "one.ply").string() + " with " +
+                 (work.path / "fence.ply").string());
     // A comparison ends when another scene replaces the first.
     desk().connection.drop(number, {work.path / "one.ply"});
-    window.waitFor("shows " + (work.path / "one.ply").string());
+    window.await("shows " + (work.path / "one.ply").string());
     CHECK(numberOfWindow("one.ply - binosplat$", "WINDOW") == number);
-    window.checkEnd();
+    window.end();
 }
 
 }  // SUITE(view_desktop)

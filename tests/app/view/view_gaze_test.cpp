@@ -27,19 +27,16 @@ Chosen findChosen(const ViewRun& run, std::size_t frame) {
 // The atelier with fewer splats, lit once for all runs.
 std::string room() {
     static const Workplace made;
-    const std::filesystem::path file = made.path / "room.ply";
-    if (!std::filesystem::exists(file)) {
-        REQUIRE(made.run("scene atelier --splats 40000 --out room.ply").exit_code == 0);
-    }
+    if (!made.holds("room.ply")) { made.go("scene atelier --splats 40000 --out room.ply"); }
     const View view = *builtinView("atelier");
-    return fmt::format("{} --eye {},{},{} --look {},{},{}", file.string(), view.eye.x, view.eye.y, view.eye.z,
-                       view.look.x, view.look.y, view.look.z);
+    return fmt::format("{} --eye {},{},{} --look {},{},{}", (made.path / "room.ply").string(), view.eye.x,
+                       view.eye.y, view.eye.z, view.look.x, view.look.y, view.look.z);
 }
 
 ViewRun look(const Workplace& work, const std::string& keys, const std::string& script, int frames) {
     const std::string config =
         "[stereo]\nmode = \"predicted\"\nperiphery = \"full\"\nbudget = 0.04\nmove_cost = 0\nfoveation = 8\n";
-    return runClean(work, "look", script,
+    return runClean(work, script,
                     fmt::format("{}{} --axes view --frames {} --load-first --hide-panel --hide-hands", room(),
                                 withConfig(work, config + "[view]\ntint = true\n" + keys), frames));
 }
@@ -48,9 +45,7 @@ std::size_t viewsOf(const ViewRun& run, std::size_t frame) {
     return run.layers(frame, "projection").at(0).at("views").size();
 }
 
-TEST_CASE_FIXTURE(
-    AtWork,
-    "what is rendered again follows the eyes, and goes back to the lens's middle when they are lost") {
+TEST_CASE_FIXTURE(AtWork, "what is rendered again follows the eyes, and goes back when they are lost") {
     // The wearer looks to the left, from 0.55 s on to the right, and from 0.8 s on the gaze is lost.
     const ViewRun run =
         look(work, "eye-tracking = true\n",
@@ -74,9 +69,7 @@ TEST_CASE_FIXTURE(
     CHECK_FALSE(run.says("gaze"));
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "where the wearer does not let the viewer see them, or the headset cannot, the eyes are "
-                  "taken to look ahead") {
+TEST_CASE_FIXTURE(AtWork, "where the eyes may not or cannot be seen, they are taken to look ahead") {
     for (const auto& [keys, line] :
          {std::pair("", ""), std::pair("eye-tracking = true\n", "eye-tracking refused\n"),
           std::pair("eye-tracking = true\n", "extension XR_EXT_eye_gaze_interaction off\n")}) {
@@ -96,20 +89,16 @@ TEST_CASE_FIXTURE(AtWork,
     }
 }
 
-TEST_CASE(
-    "with foveation a headset that takes insets has one for each eye, with every method, as good as the full "
-    "picture within") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "with foveation each eye has an inset, as good as the full picture there") {
     // 45 degrees to each side in 256 pixels, and half of that again for the inset: as many pixels as the full
     // picture has, at the same places.
     constexpr std::uint32_t kSize = 256, kQuarter = kSize / 4;
     const std::string begin =
         "rate 50\nsize 256 256\ninset 26.565051177 size 128 128\nframes from 9 to 9 every 1\n";
-    const auto runInset = [&](const std::string& name, const std::string& script, double foveation,
-                              bool wanted) {
+    const auto runInset = [&](const std::string& script, double foveation, bool wanted) {
         const std::string keys =
             fmt::format("[stereo]\nfoveation = {}\n{}foveated-inset = {}\n", foveation, kMethodPage, wanted);
-        return runClean(work, name, script,
+        return runClean(work, script,
                         "builtin:fence --mode two-pass --frames 200 --load-first --hide-panel --hide-hands" +
                             withConfig(work, keys));
     };
@@ -119,8 +108,7 @@ TEST_CASE(
     // A session that follows a lost one has insets, too.
     acts.at("lose-session").wait(0.3);
     const std::string rest = begin + "at 0.2 exit\n";
-    const ViewRun full = runInset("full", rest, 0.0, true),
-                  inset = runInset("inset", acts.script(), 20.0, true);
+    const ViewRun full = runInset(rest, 0.0, true), inset = runInset(acts, 20.0, true);
     CHECK(viewsOf(full, 9) == 2);
     std::size_t drawn = 0;
     for (std::size_t frame = 0; frame < inset.frames.size(); ++frame) {
@@ -142,20 +130,18 @@ TEST_CASE(
         CHECK(psnrOf({0, 0}, {kSize, kQuarter}) < 36.0);  // at half the size
     }
     // The insets exist only if they were requested and if the runtime offers them.
-    CHECK(viewsOf(runInset("unwanted", rest, 20.0, false), 9) == 2);
-    CHECK(viewsOf(runInset("without", "extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
+    CHECK(viewsOf(runInset(rest, 20.0, false), 9) == 2);
+    CHECK(viewsOf(runInset("extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
 }
 
-TEST_CASE(
-    "the runtime moves an inset with the gaze where the wearer lets the eyes be followed, and only there") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "the runtime moves an inset with the gaze only where the wearer lets it") {
     const std::string script = "rate 50\nsize 64 64\ninset 20\nframes none\ngaze 0 15 0\nat 0.3 exit\n";
     for (const bool follows : {false, true}) {
         CAPTURE(follows);
         const std::string keys =
             fmt::format("[stereo]\nfoveation = 20\n[view]\neye-tracking = {}\n", follows);
         const ViewRun run =
-            runClean(work, "moving", script,
+            runClean(work, script,
                      "builtin:one-splat --load-first --hide-panel --hide-hands" + withConfig(work, keys));
         const std::size_t frame = run.frames.size() - 4;
         REQUIRE(viewsOf(run, frame) == 4);

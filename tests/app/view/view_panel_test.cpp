@@ -1,5 +1,4 @@
-// Facts about the viewer's panel: a ray points, the trigger clicks, choices take effect and are visible, and
-// saved settings come back.
+// Facts about the viewer's panel: clicks take effect, are visible, and come back when saved.
 #include "app/view/panel/message_picture.h"
 #include "tests/app/view/unchanged_shaders.h"
 #include "tests/app/view/view_acts.h"
@@ -14,16 +13,12 @@ const std::string kSources = BINOSPLAT_SOURCE_DIR "/shaders";
 
 const std::string kAsHeadset = " --size 96x96 --fov-x 90 --ipd 0.063";
 
-TEST_CASE(
-    "what is clicked on the panel is so, beside it nothing is clicked, and the place is saved, and comes "
-    "back") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "what is clicked on the panel is so, and the place is saved, and comes back") {
     Acts acts("rate 50\nsize 160 160\nframes none\n");
     // A step forwards.
     acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15).click({1.2, 0.3}).click({-0.2, 0.3});
     const double beside = acts.look(0.05);
-    // Files are written and read alongside the frames, which come as fast as they can in lock-step; this many
-    // frames are enough for them.
+    // Files are read and written alongside the frames, for which this many in lock-step are enough.
     constexpr double kFilesSeconds = 100 / 50.0;
     acts.click(onMethod("right")).click(onMethod("Save")).wait(kFilesSeconds);
     acts.click(onMethod("left")).click(onMethod("Load")).wait(kFilesSeconds);
@@ -40,7 +35,7 @@ TEST_CASE(
     acts.click(placeOf("Quit")).wait(0.5);
     // What the command line says about the simulated headset overrides the environment.
     const ViewRun run = runClean(
-        work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
+        work, acts, kScene + withConfig(work, kMethodPage),
         kValidated +
             " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
     CHECK_FALSE(fs::exists(work.path / "elsewhere"));
@@ -52,10 +47,10 @@ TEST_CASE(
     CHECK(glm::length(glm::dvec2(size[0], size[1]) - kPanelMetres) < 1e-6);
     checkOrder(run, {"dominant = \"right\"", "saved as ", "dominant = \"left\"", "loaded ", "margin = ",
                      "budget = ", "resolution-scale = ", "mode = \"reproject\"", "refresh-rate = 120"});
-    CHECK(std::stod(run.lines(" = ").at(0).substr(6)) > 50.0 * beside);
+    CHECK(static_cast<double>(frameOf(run.lines(" = ").at(0))) > 50.0 * beside);
     const auto valueOf = [&](const std::string& key) {
         const std::string line = run.lines(key + " = ").at(0);
-        return std::stod(line.substr(line.find(key + " = ") + key.size() + 3));
+        return std::stod(line.substr(line.rfind(' ')));
     };
     // Ranges of 0 to 128 pixels, 0 to 100 % and 0.1 to 2, all clicked at the same share of their length.
     const double share = valueOf("budget"), scale = valueOf("resolution-scale");
@@ -70,21 +65,17 @@ TEST_CASE(
     // Both the viewer and `render` accept the file.
     const std::string said = run.lines("saved as ").at(0);
     const fs::path file = said.substr(said.find("saved as ") + 9);
-    CHECK(fs::weakly_canonical(file) ==
-          work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
+    CHECK(fs::weakly_canonical(file) == wallSettings(work));
     CHECK(run.says("loaded " + file.string()));
-    REQUIRE(
-        work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'")
-            .exit_code == 0);
+    const std::string with_file = " --config '" + file.string() + "'";
+    work.go("render builtin:slanted-wall --out rendered --size 32x32" + with_file);
     // The wearer stands there again, unless an option gives another place.
-    const auto look = [&](const std::string& name, const std::string& arguments) {
-        return runClean(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n",
-                        kWall + " --hide-panel " + arguments);
+    const auto look = [&](const std::string& arguments) {
+        return runClean(work, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n",
+                        kWall + " --hide-panel --mode mono --dominant right" + arguments);
     };
-    const std::string as_then = "--mode mono --dominant right";
-    const ViewRun there = look("there", as_then),
-                  named = look("named", as_then + " --config '" + file.string() + "'"),
-                  before = look("before", as_then + " --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
+    const ViewRun there = look(""), named = look(with_file),
+                  before = look(" --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
     CHECK(there.says("the wearer stands where this scene was saved"));
     CHECK_FALSE(before.says("where this scene was saved"));
     CHECK(compare(there.eye(5, kLeft), named.eye(5, kLeft)).psnrDb() > 60.0);
@@ -95,14 +86,13 @@ TEST_CASE(
     Acts reload(kBlind);
     reload.click(onMethod("Shaders", true)).wait(0.1);
     const std::string method_page = withConfig(work, kMethodPage);
-    const ViewRun other = runClean(work, "other", reload.script(), kOneSplat + " --mode mono" + method_page,
+    const ViewRun other = runClean(work, reload, kOneSplat + " --mode mono" + method_page,
                                    kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK_FALSE(other.says("where this scene was saved"));
     CHECK(other.says("shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
     std::ofstream(file) << "[view]\nnonsense = 1\n";
     REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull_pages.comp").exit_code == 0);
-    const ViewRun broken =
-        runClean(work, "broken", reload.script(), kScene + method_page + " --shaders pipe");
+    const ViewRun broken = runClean(work, reload, kScene + method_page + " --shaders pipe");
     CHECK(broken.says("slanted-wall.view.toml:2"));
     CHECK(broken.says("shaders stay as they were: pipe/sort/cull_pages.comp is not a file"));
 }
@@ -145,9 +135,8 @@ TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a
         acts.click(onMethod("Shaders", true));
         looks.push_back(acts.look());
     }
-    const ViewRun run =
-        runClean(work, "reload", acts.script(), kScene + " --shaders edited" + withConfig(work, kMethodPage),
-                 kValidated + " PATH=\"$PWD/tools:$PATH\"");
+    const ViewRun run = runClean(work, acts, kScene + " --shaders edited" + withConfig(work, kMethodPage),
+                                 kValidated + " PATH=\"$PWD/tools:$PATH\"");
     std::size_t count = 0;
     for (const auto& file : fs::recursive_directory_iterator(kSources)) {
         count += file.path().extension() == ".comp" ? 1 : 0;
@@ -160,59 +149,47 @@ TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a
         return partOf(run.eye(run.pictureAt(seconds), kRight), {49, 0}, {96, 32});
     };
     for (const std::size_t i : {1, 2, 3}) {
-        const std::size_t other = countPixels(seenAt(looks[0]), seenAt(looks[i] + 0.04), std::not_equal_to{});
-        CAPTURE(i);
-        CHECK((other == 0) == (i != 3));
+        CHECK_MESSAGE((seenAt(looks[0]).values == seenAt(looks[i] + 0.04).values) == (i != 3), i);
     }
 }
 
 TEST_CASE_FIXTURE(AtWork, "every shader is compiled from its source as the build does it" * nightly()) {
     Acts acts(kBlind);
     acts.click(onMethod("Shaders", true)).wait(0.1);
-    const ViewRun run =
-        runClean(work, "all", acts.script(),
-                 kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
+    const ViewRun run = runClean(
+        work, acts, kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
     CHECK(run.says(" shaders reloaded in "));
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "a resolution that the device has no memory for is refused on the panel, and what was "
-                  "shown before stays") {
+TEST_CASE_FIXTURE(AtWork, "a resolution without memory for it is refused, and what was shown stays") {
     const std::string config = withConfig(work, kMethodPage + "resolution-scale = 0.25\n");
-    const auto choose = [&](const std::string& name, const std::string& headset,
-                            const std::string& arguments) {
+    const auto choose = [&](const std::string& headset, const std::string& arguments) {
         Acts acts("rate 50\n" + headset);
         acts.wait(0.1).press("right b").click(onMethod("resolution")).press("right b").wait(0.2);
-        return runClean(work, name, acts.script(), arguments + config);
+        return runClean(work, acts, arguments + " --hide-panel" + config);
     };
-    const ViewRun run = choose("full", "size 1024 1024\nframes from 12 to 36 every 24\n",
-                               kWall + " --hide-panel --memory-limit 16");
+    const ViewRun run =
+        choose("size 1024 1024\nframes from 12 to 36 every 24\n", kWall + " --memory-limit 16");
     CHECK(run.says("does not fit: "));
     CHECK(run.says("the limit is 16.0 MiB (memory-limit)"));
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
-    // At the slider's middle (about 896 pixels) the eyes' pictures fit, but the pictures handed to the
-    // headset do not.
-    CHECK(choose("brought", "size 853 853\nframes none\n",
-                 kOneSplat + " --hide-panel --mode shared --axes view --memory-limit 21")
+    // At the slider's middle the eyes' pictures fit, but those that are handed to the headset do not.
+    CHECK(choose("size 853 853\nframes none\n", kOneSplat + " --mode shared --axes view --memory-limit 21")
               .says("presented pixels needs "));
 }
 
-TEST_CASE(
-    "tint and centre ROIs are seen in the eye made from the other, and a recorded walk with clicks as it is "
-    "rendered") {
-    const Workplace work;
-    std::ofstream motion(work.path / "walk.csv");
-    motion << "time_s,x,y,z,qx,qy,qz,qw\n";
+TEST_CASE_FIXTURE(AtWork, "tint and ROIs are seen in the eye made from the other, a walk as rendered") {
+    std::string motion = "time_s,x,y,z,qx,qy,qz,qw\n";
     for (int i = 0; i <= 300; ++i) {
         // The head is still at first.
         const double time_s = i / 90.0, t = std::max(0.0, time_s - 1.3), turn = 0.2 * std::sin(2.0 * t),
                      nod = 0.1 * std::sin(3.0 * t);
-        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s,
+        motion += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s,
                               0.15 * std::sin(t), 1.6 + 0.02 * std::sin(9.0 * t), -0.1 * t, nod, turn,
                               std::sqrt(1.0 - nod * nod - turn * turn));
     }
-    motion.close();
+    work.write("walk.csv", motion);
     Acts acts("rate 50\nsize 96 96\nframes every 5\nhead-motion walk.csv\n");
     const double plain = acts.look();
     acts.press("right b").click(onMethod("Show how tiles were made"));
@@ -225,7 +202,7 @@ TEST_CASE(
         .wait(0.25);
     const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
     // So close to the bars that holes open inside the picture.
-    const ViewRun run = runClean(work, "walk", acts.script(),
+    const ViewRun run = runClean(work, acts,
                                  "builtin:fence --load-first --hide-panel --hide-hands --axes view --mode "
                                  "paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
                                      withConfig(work, kMethodPage));
@@ -258,9 +235,7 @@ TEST_CASE(
     CHECK(run.loggedEye(run.frameAt(walked), 0).position.z < -0.05);
 }
 
-TEST_CASE_FIXTURE(
-    AtWork,
-    "a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
+TEST_CASE_FIXTURE(AtWork, "a runtime with only OpenXR 1.0 and Vulkan shows every method and takes clicks") {
     std::string begin = "rate 50\nsize 96 96\nframes every 4\nstage off\nprofile khr/simple_controller\n";
     for (const simulated::Extension& extension : simulated::kExtensions) {
         const std::string name = extension.name;
@@ -276,10 +251,10 @@ TEST_CASE_FIXTURE(
     const double shared = acts.look();
     acts.at("controller left on").at("controller right on").wait(0.1).press("right menu");
     acts.click(onMethod("View"), "right select").click(placeOf("Teleport"), "right select");
-    acts.move("controller right", lookingAt({0.2, 1.2, -0.35}, {0.2, 1.2, -1.0})).wait(0.05);
+    acts.right(lookingAt({0.2, 1.2, -0.35}, {0.2, 1.2, -1.0})).wait(0.05);
     const double aiming = acts.hold("right select", 0.2).wait(0.05).look();
     const ViewRun run = runClean(
-        work, "core", acts.script(),
+        work, acts,
         "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withConfig(work, kMethodPage));
     checkOrder(run, said);
     const std::size_t frame = run.pictureAt(shared);
@@ -293,30 +268,26 @@ TEST_CASE_FIXTURE(
     CHECK(poseOf(targets[0].at("pose")).position.y == doctest::Approx(-1.59));
 }
 
-TEST_CASE("the first start shows three gestures one after the other, and no other start shows them") {
-    const Workplace work;
-    const std::string script = "rate 20\nsize 64 64\nframes none\nat 23 exit\n";
-    const auto shownIn = [&](const ViewRun& run) {
-        std::size_t frames = 0;
-        for (std::size_t i = 0; i < run.frames.size(); ++i) {
-            frames += run.quadsWhere(i,
-                                     [](const nlohmann::json& quad) {
-                                         return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y;
-                                     })
-                          .size();
-        }
-        return frames;
-    };
-    const auto run = [&](const std::string& name, const std::string& when) {
-        return runClean(
-            work, name, script,
+TEST_CASE_FIXTURE(AtWork, "the first start shows three gestures in turn, and no other start does") {
+    const auto shown = [&](const std::string& when) {
+        const ViewRun run = runClean(
+            work, "rate 20\nsize 64 64\nframes none\nat 23 exit\n",
             kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
+        std::size_t quads = 0;
+        for (std::size_t i = 0; i < run.frames.size(); ++i) {
+            quads += run.quadsWhere(i,
+                                    [](const nlohmann::json& quad) {
+                                        return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y;
+                                    })
+                         .size();
+        }
+        return quads;
     };
     // Three times seven seconds, minus the first frames, which wait for a file to be read.
-    CHECK(shownIn(run("first", "once")) == between(std::size_t{380}, std::size_t{430}));
-    CHECK(shownIn(run("second", "once")) == 0);
-    CHECK(shownIn(run("never", "never")) == 0);
-    CHECK(shownIn(run("always", "always")) == between(std::size_t{380}, std::size_t{430}));
+    CHECK(shown("once") == between(380, 430));
+    CHECK(shown("once") == 0);
+    CHECK(shown("never") == 0);
+    CHECK(shown("always") == between(380, 430));
 }
 
 }  // SUITE(view_panel)

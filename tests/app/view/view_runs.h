@@ -10,23 +10,30 @@
 
 namespace binosplat::test {
 
-// The validation layers of Vulkan and OpenXR are on, and both must stay silent. No window opens, since a
-// mouse might pass over it.
-inline const std::string kValidated =
-    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
-    "XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
-    "XR_CORE_VALIDATION_EXPORT_TYPE=text";
+// With settings of the test's own, under Vulkan's validation layers, and without a window.
+inline const std::string kAlone =
+    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1";
+// Under those of OpenXR as well; both must stay silent.
+inline const std::string kValidated = kAlone +
+                                      " XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
+                                      "XR_CORE_VALIDATION_EXPORT_TYPE=text";
 
-// The same on a device that fails as `faults` says (tests/faults).
+// The same on a device, or in a headset, that fails as `faults` says (tests/faults).
 inline std::string withFaults(const std::string& faults, const std::string& environment = kValidated) {
     return environment +
            " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults " +
            faults;
 }
+inline std::string withXrFaults(const std::string& faults, const std::string& environment = kAlone) {
+    return environment +
+           " XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+           "/openxr' " +
+           faults;
+}
 
 // Saved pictures go into a folder of the workplace.
 inline void picturesInto(const Workplace& work) {
-    std::filesystem::create_directories(work.base / "config");
+    fs::create_directories(work.base / "config");
     std::ofstream(work.base / "config" / "user-dirs.dirs")
         << fmt::format("XDG_PICTURES_DIR=\"{}/pictures\"\n", work.path.string());
 }
@@ -49,13 +56,9 @@ inline LoggedPose stagePose(const nlohmann::json& quad) {
 
 inline Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
     Image part{to - from, picture.channels, {}};
-    const auto channels = static_cast<std::size_t>(picture.channels);
     for (std::uint32_t y = from.y; y < to.y; ++y) {
-        const auto row =
-            picture.values.begin() +
-            static_cast<std::ptrdiff_t>((std::size_t{y} * picture.size_px.x + from.x) * channels);
-        part.values.insert(part.values.end(), row,
-                           row + static_cast<std::ptrdiff_t>((to.x - from.x) * channels));
+        const auto row = picture.values.begin() + picture.channels * std::int64_t{y} * picture.size_px.x;
+        part.values.insert(part.values.end(), row + picture.channels * from.x, row + picture.channels * to.x);
     }
     return part;
 }
@@ -70,23 +73,27 @@ inline Image sideOf(const Image& both, int side) {
 struct LoggedEye : LoggedPose {
     double left, right, up, down;
 };
+inline LoggedEye eyeFrom(const nlohmann::json& eye) {
+    const auto tangent = [&](const char* name) { return std::tan(eye.at("fov").at(name).get<double>()); };
+    return {poseOf(eye.at("pose")), tangent("left"), tangent("right"), tangent("up"), tangent("down")};
+}
+
+// The frame of a line such as "frame 12: help".
+inline std::size_t frameOf(const std::string& line) {
+    return std::stoul(line.substr(line.find("frame ") + 6));
+}
 
 struct ViewRun {
     Outcome outcome;
-    std::filesystem::path out;
+    fs::path out;
     std::vector<nlohmann::json> frames;   // from frames.jsonl
     std::vector<nlohmann::json> between;  // its lines without a frame
 
-    [[nodiscard]] bool says(const std::string& words) const {
-        return outcome.output.find(words) != std::string::npos;
-    }
+    [[nodiscard]] bool says(const std::string& words) const { return contains(outcome.output, words); }
     // The lines of the output that contain these words.
     [[nodiscard]] std::vector<std::string> lines(const std::string& words) const {
-        std::vector<std::string> found;
-        std::istringstream output(outcome.output);
-        for (std::string line; std::getline(output, line);) {
-            if (line.find(words) != std::string::npos) { found.push_back(line); }
-        }
+        std::vector<std::string> found = linesIn(outcome.output);
+        std::erase_if(found, [&](const std::string& line) { return !contains(line, words); });
         return found;
     }
     // The first frame displayed this many seconds after the script began, or later.
@@ -97,6 +104,7 @@ struct ViewRun {
         REQUIRE(found != frames.end());
         return static_cast<std::size_t>(found - frames.begin());
     }
+    [[nodiscard]] const nlohmann::json& at(double seconds) const { return frames.at(frameAt(seconds)); }
     // The same, among frames with pictures.
     [[nodiscard]] std::size_t pictureAt(double seconds) const {
         std::size_t frame = frameAt(seconds);
@@ -118,9 +126,7 @@ struct ViewRun {
         return compare(eye(a, 0), eye(b, 0)).psnrDb();
     }
     [[nodiscard]] LoggedEye loggedEye(std::size_t frame, std::size_t side) const {
-        const nlohmann::json& eye = frames.at(frame).at("eyes").at(side);
-        const auto tangent = [&](const char* name) { return std::tan(eye.at("fov").at(name).get<double>()); };
-        return {poseOf(eye.at("pose")), tangent("left"), tangent("right"), tangent("up"), tangent("down")};
+        return eyeFrom(frames.at(frame).at("eyes").at(side));
     }
 
     // The layers of one type in a frame.
@@ -137,14 +143,11 @@ struct ViewRun {
     }
     // The size of the part of the picture that the eye sees; the picture may be larger.
     [[nodiscard]] glm::ivec2 sizePx(std::size_t frame, std::size_t side) const {
-        const nlohmann::json picture = view(frame, side), &fov = picture.at("fov"),
-                             &rect = picture.at("rect");
-        const auto tangent = [&](const char* name) { return std::tan(fov.at(name).get<double>()); };
-        const LoggedEye eye = loggedEye(frame, side);
-        const double across = (eye.right - eye.left) / (tangent("right") - tangent("left"));
-        const double down = (eye.up - eye.down) / (tangent("up") - tangent("down"));
-        return glm::ivec2(
-            glm::round(glm::dvec2(across * rect.at(2).get<double>(), down * rect.at(3).get<double>())));
+        const nlohmann::json picture = view(frame, side), &rect = picture.at("rect");
+        const LoggedEye seen = loggedEye(frame, side), drawn = eyeFrom(picture);
+        const glm::dvec2 share((seen.right - seen.left) / (drawn.right - drawn.left),
+                               (seen.up - seen.down) / (drawn.up - drawn.down));
+        return glm::ivec2(glm::round(share * glm::dvec2(rect.at(2).get<double>(), rect.at(3).get<double>())));
     }
     [[nodiscard]] int width(std::size_t frame) const { return sizePx(frame, 0).x; }
     // Where the eyes' views are in the room.
@@ -162,6 +165,10 @@ struct ViewRun {
     [[nodiscard]] std::vector<nlohmann::json> rays(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("size").at(0) < 0.01; });
     }
+    // What moves with the head: messages, and the vignette.
+    [[nodiscard]] std::vector<nlohmann::json> beforeEyes(std::size_t frame) const {
+        return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; });
+    }
     // Those of this width in metres: hands, parts of controllers, the target of a teleport.
     [[nodiscard]] std::vector<nlohmann::json> quadsAsWide(std::size_t frame, double width_m) const {
         return quadsWhere(frame, [&](const nlohmann::json& quad) {
@@ -172,10 +179,8 @@ struct ViewRun {
     template <typename Condition>
     [[nodiscard]] std::vector<nlohmann::json> quadsWhere(std::size_t frame,
                                                          const Condition& condition) const {
-        std::vector<nlohmann::json> found;
-        for (const auto& quad : layers(frame, "quad")) {
-            if (condition(quad)) { found.push_back(quad); }
-        }
+        std::vector<nlohmann::json> found = layers(frame, "quad");
+        std::erase_if(found, [&](const nlohmann::json& quad) { return !condition(quad); });
         return found;
     }
 };
@@ -183,13 +188,12 @@ struct ViewRun {
 // Runs `view` with `arguments`, while a script with these lines drives the headset.
 inline ViewRun runView(const Workplace& work, const std::string& name, const std::string& script,
                        const std::string& arguments, const std::string& environment = kValidated) {
-    std::ofstream(work.path / (name + ".script")) << script;
+    work.write(name + ".script", script);
     ViewRun run;
     run.out = work.path / name;
     run.outcome =
         work.run(fmt::format("view {0} --simulate {1}.script --out {1}", arguments, name), environment);
-    std::ifstream log(run.out / "frames.jsonl");
-    for (std::string line; std::getline(log, line);) {
+    for (const std::string& line : linesIn(textIn(run.out / "frames.jsonl"))) {
         nlohmann::json json = nlohmann::json::parse(line);
         (json.contains("frame") ? run.frames : run.between).push_back(std::move(json));
     }
@@ -198,25 +202,39 @@ inline ViewRun runView(const Workplace& work, const std::string& name, const std
 
 // An argument for a config with these lines.
 inline std::string withConfig(const Workplace& work, const std::string& lines) {
-    std::ofstream(work.path / "view.toml") << lines;
+    work.write("view.toml", lines);
     return " --config view.toml";
 }
-inline const std::string kMethodPage = "[view]\npanel-page = \"method\"\n";
+inline const std::string kMethodPage = "[view]\npanel-page = \"method\"\n",
+                         kScenesPage = "[view]\npanel-page = \"scenes\"\n";
 
-// The run succeeded, and the validation layers were silent.
-inline void checkClean(const ViewRun& run) {
-    INFO("stdout: " << run.outcome.output);
-    INFO("stderr: " << run.outcome.errors);
-    CHECK(run.outcome.exit_code == 0);
-    // The layer was loaded, and reported nothing else.
-    CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");
-    CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) ==
-          these(std::string::npos, std::string::npos));
+// What the viewer saved about the slanted wall.
+inline fs::path wallSettings(const Workplace& work) {
+    return work.base / "config/binosplat/scenes/slanted-wall.view.toml";
+}
+inline nlohmann::json savedOfWall(const Workplace& work, const std::string& key) {
+    const std::string text = textIn(wallSettings(work));
+    const std::size_t at = text.find(key + " = "), begin = at + key.size() + 3;
+    REQUIRE(at != std::string::npos);
+    return nlohmann::json::parse(text.substr(begin, text.find('\n', begin) - begin));
 }
 
-// A run that succeeded in this way, and never had more layers than a runtime must accept.
-inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script,
-                        const std::string& arguments, const std::string& environment = kValidated) {
+// The run succeeded and reported nothing: beside `errors`, what the layers themselves say.
+inline void checkEnded(const ViewRun& run, const std::string& errors = "") {
+    INFO("stdout: " << run.outcome.output);
+    CHECK(these(run.outcome.exit_code, run.outcome.errors) == these(0, errors));
+    CHECK(these(run.says("VUID"), run.says("ERROR")) == these(false, false));
+}
+// OpenXR's validation layer was loaded, too.
+inline void checkClean(const ViewRun& run) {
+    checkEnded(run, "Core Validation output type: text, first time = true\n");
+}
+
+// Into a folder of its own; it succeeds, with no more layers than a runtime must accept.
+inline ViewRun runClean(const Workplace& work, const std::string& script, const std::string& arguments,
+                        const std::string& environment = kValidated) {
+    std::string name = "run";
+    while (work.holds(name)) { name += '_'; }
     const ViewRun run = runView(work, name, script, arguments, environment);
     checkClean(run);
     for (const auto& frame : run.frames) { CHECK(frame.at("layers").size() <= 16); }
@@ -244,10 +262,9 @@ inline Colour colourAt(const Image& image, glm::uvec2 at) {
 template <typename Condition>
 std::size_t countPixels(const Image& a, const Image& b, const Condition& condition) {
     std::size_t found = 0;
-    for (std::uint32_t y = 0; y < a.size_px.y; ++y) {
-        for (std::uint32_t x = 0; x < a.size_px.x; ++x) {
-            found += condition(colourAt(a, {x, y}), colourAt(b, {x, y})) ? 1 : 0;
-        }
+    for (std::size_t i = 0; i < a.pixelCount(); ++i) {
+        const glm::uvec2 at(i % a.size_px.x, i / a.size_px.x);
+        found += condition(colourAt(a, at), colourAt(b, at));
     }
     return found;
 }

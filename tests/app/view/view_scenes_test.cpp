@@ -11,8 +11,7 @@
 
 SUITE(view_scenes) {
 
-// Scenes load meanwhile, and take their time: this needs the real clock, since frames in lock-step come as
-// fast as they can.
+// Scenes take their time to load, but frames in lock-step come as fast as they can.
 const std::string kWhileLoading = kValidated + " SIMULATED_OPENXR_CLOCK=real";
 
 // Something was visible in every frame.
@@ -23,45 +22,41 @@ void checkAlwaysShown(const ViewRun& run) {
     }
 }
 
-TEST_CASE(
-    "another scene comes while this one stays, chosen or the next; one that cannot be read gives a message; "
-    "both are remembered") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "another scene comes while this one stays; a broken one gives a message") {
     // "scenes" in Hebrew: letters that the panel's font gets while it is shown.
     const std::string name = "\xd7\xa1\xd7\xa6\xd7\xa0\xd7\x95\xd7\xaa";
     const fs::path folder = work.path / name;
     fs::create_directory(folder);
-    REQUIRE(work.run("scene one-splat --out " + name + "/room10.ply").exit_code == 0);
-    REQUIRE(work.run("scene slanted-wall --out " + name + "/room9.ply").exit_code == 0);
-    std::ofstream(folder / "room1.ply") << "ply\nnonsense\n";
-    std::ofstream(folder / "notes.txt") << "no scene";
+    work.go("scene one-splat --out " + name + "/room10.ply");
+    work.go("scene slanted-wall --out " + name + "/room9.ply");
+    work.write(name + "/room1.ply", "ply\nnonsense\n");
+    work.write(name + "/notes.txt", "no scene");
     Acts acts("rate 45\nsize 64 64\nframes none\n");
     acts.wait(1.3);
     // Frames may be late.
     for (const char* widget : {"room1.ply", "Next scene", "room10.ply"}) {
         acts.point(placeOfScene(widget, folder.string())).wait(0.25).press("right trigger", 0.3).wait(0.4);
     }
-    const ViewRun run = runClean(work, "choose", acts.script(),
-                                 name + "/room10.ply --load-first --mode mono --hide-hands" +
-                                     withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
-                                 kWhileLoading);
+    const ViewRun run =
+        runClean(work, acts,
+                 name + "/room10.ply --load-first --mode mono --hide-hands" + withConfig(work, kScenesPage),
+                 kWhileLoading);
     const std::string bad = (folder / "room1.ply").string(), next = (folder / "room9.ply").string(),
                       first = (folder / "room10.ply").string();
     checkOrder(run, {"shows " + name + "/room10.ply", bad + ":", "shows " + next, "shows " + first});
     checkAlwaysShown(run);
     const std::string recent = textIn(work.base / "config" / "binosplat" / "recent-scenes.txt");
     CHECK(recent.starts_with(first + "\n" + next + "\n"));
-    CHECK(recent.find(bad) == std::string::npos);
+    CHECK_FALSE(contains(recent, bad));
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE_FIXTURE(
-    AtWork, "a streamed scene is there at once, becomes finer while frames go on, and says what is missing") {
+TEST_CASE_FIXTURE(AtWork, "a streamed scene is there at once, becomes finer, and says what is missing") {
     splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
                {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
     fs::remove(work.path / "split" / "0_2.sog");
     const ViewRun run = runClean(
-        work, "streamed",
+        work,
         "rate 45\nsize 96 96\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1 position 0 1.6 0\n"
         "head 1.6 position 0 1.6 0 turn 90 0\nat 4 exit\n",
         "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
@@ -76,14 +71,11 @@ TEST_CASE_FIXTURE(
 }
 #endif
 
-TEST_CASE(
-    "a moving scene plays, rests while a button has it rest, and plays on; the panel has it rest, steps, and "
-    "goes to a frame") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a moving scene plays, rests, steps and goes to a frame") {
     writeSliding((work.path / "slide").string(), 12, 2000);
     const std::string arguments = "slide --load-first --mode shared --hide-hands --scene-rate 15 ";
     const ViewRun played =
-        runClean(work, "play", "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
+        runClean(work, "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
                  arguments + "--hide-panel", kWhileLoading);
     INFO(played.outcome.output);
     checkOrder(played, {"a moving scene of 12 frames, 15 a second", "paused at frame", "plays from frame"});
@@ -91,12 +83,11 @@ TEST_CASE(
     const double begin_s = ViewRun::secondsOf(played.frames.front());
     std::size_t others = 0, same_at_rest = 0, at_rest = 0;
     for (std::size_t frame = 8; frame + 3 < played.frames.size(); ++frame) {
-        const double time_s = ViewRun::secondsOf(played.frames[frame]) - begin_s;
-        const bool is_rest = time_s > 1.4 && time_s < 1.9;
-        at_rest += is_rest ? 1 : 0;
-        const bool same = played.eye(frame, 0).values == played.eye(frame + 1, 0).values;
-        same_at_rest += is_rest && same ? 1 : 0;
-        others += !is_rest && !same ? 1 : 0;
+        const bool is_rest = ViewRun::secondsOf(played.frames[frame]) - begin_s == between(1.4, 1.9),
+                   same = played.eye(frame, 0).values == played.eye(frame + 1, 0).values;
+        at_rest += is_rest;
+        same_at_rest += is_rest && same;
+        others += !is_rest && !same;
     }
     CHECK(others > 3);
     CHECK(at_rest > 3);
@@ -108,7 +99,7 @@ TEST_CASE(
     acts.click(placeOfTime("Time", true, PanelPage::kView)).click(placeOfTime("Pause", true));
     for (const char* widget : {"Step on", "Step on", "Step back"}) { acts.click(placeOfTime(widget, false)); }
     acts.click(end).click(placeOfTime("Step on", false)).click(placeOfTime("Play", false));
-    const ViewRun run = runClean(work, "panel", acts.script(), arguments);
+    const ViewRun run = runClean(work, acts, arguments);
     INFO(run.outcome.output);
     // After the last frame comes the first.
     checkOrder(run, {"paused at frame 12 of 12", "paused at frame 1 of 12", "plays from frame 1 of 12"});
@@ -118,13 +109,12 @@ TEST_CASE(
     CHECK(run.says("frames that waited for them: 0\n"));
 }
 
-TEST_CASE_FIXTURE(
-    AtWork, "a picture of both eyes is a file that is not overwritten, of what the lenses hide as well") {
+TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file of its own, also of what the lenses hide") {
     picturesInto(work);
-    const auto take = [&](const std::string& name, const std::string& mask, const std::string& options) {
+    const auto take = [&](const std::string& mask, const std::string& options) {
         Acts acts("rate 50\nsize 160 160\nframes from 10 to 10\nvisibility-mask " + mask + "\n");
         acts.wait(0.05).click(placeOf("Picture")).click(placeOf("Picture")).point(kBeside).wait(0.1);
-        const ViewRun run = runClean(work, name, acts.script(), kWall + " --mode shared" + options);
+        const ViewRun run = runClean(work, acts, kWall + " --mode shared" + options);
         CHECK(run.says("the lenses hide ") == (mask == "on"));
         return run;
     };
@@ -137,7 +127,7 @@ TEST_CASE_FIXTURE(
         return files;
     };
     const std::string all = withConfig(work, "[view]\npicture-both-eyes = true\n");
-    const ViewRun run = take("off", "off", all), masked = take("on", "on", all);
+    const ViewRun run = take("off", all), masked = take("on", all);
     REQUIRE(these(filesOf(run).size(), filesOf(masked).size()) == these(std::size_t{2}, std::size_t{2}));
     const Image both = readPicture(filesOf(run)[0]);
     REQUIRE(both.size_px == glm::uvec2(320, 160));
@@ -146,34 +136,31 @@ TEST_CASE_FIXTURE(
     }
     CHECK(std::ranges::distance(fs::directory_iterator(work.path / "pictures")) == 4);
     // One eye's picture, at the headset's size whatever size the frames have.
-    const ViewRun one = take("one", "off", withConfig(work, "[view]\nresolution-scale = 0.5\n"));
+    const ViewRun one = take("off", withConfig(work, "[view]\nresolution-scale = 0.5\n"));
     const Image dominant = readPicture(filesOf(one).at(0));
     CHECK(dominant.size_px == glm::uvec2(160, 160));
     CHECK(compare(dominant, sideOf(both, kLeft)).psnrDb() > 50.0);
     // As the wearer sees it, on the right, where no panel hangs.
     for (const int side : {kLeft, kRight}) {
-        const Image seen = run.eye(10, side);
-        const glm::uvec2 from(120, 0), to(160, 160);
+        const auto right = [](const Image& eye) { return partOf(eye, {120, 0}, {160, 160}); };
         const auto isSame = [](const Colour& a, const Colour& b) { return std::abs(a[0] - b[0]) < 0.01f; };
-        CHECK(countPixels(partOf(seen, from, to), partOf(sideOf(both, side), from, to), isSame) >
-              40 * 160 * 99 / 100);
+        CHECK(countPixels(right(run.eye(10, side)), right(sideOf(both, side)), isSame) > 40 * 160 * 99 / 100);
     }
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "the room shows behind the scene where the headset and the wearer let it, in every mode") {
-    const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background ";
+// A place from which the wall does not fill the picture, and what is in the picture's corner then.
+const std::string kAfar = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background ";
+const glm::vec3 kRed(1.0f, 0.0f, 0.0f), kGreenRoom(0.2f, 0.9f, 0.4f);
+bool isCorner(const ViewRun& run, double seconds, const glm::vec3& colour, int side = kLeft) {
+    const auto [r, g, b] = colourAt(run.eye(run.pictureAt(seconds), side), {0, 0});
+    return glm::length(glm::vec3(r, g, b) - colour) < 0.02f;
+}
+
+TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where headset and wearer let it, in every mode") {
     const auto begin = [](const std::string& modes, const std::string& room) {
         return "rate 50\nsize 128 128\nframes every 5\nblend-modes " + modes + "\nroom-colour " + room + "\n";
     };
     const std::string both = "opaque alpha-blend", green_room = "0.2 0.9 0.4";
-    // The picture's corner, where there is no scene.
-    const auto isCorner = [](const ViewRun& run, double seconds, int side, const glm::vec3& colour) {
-        const auto [r, g, b] = colourAt(run.eye(run.pictureAt(seconds), side), {0, 0});
-        return glm::length(glm::vec3(r, g, b) - colour) < 0.02f;
-    };
-    const glm::vec3 red(1.0f, 0.0f, 0.0f), green(0.2f, 0.9f, 0.4f);
-
     Acts acts(begin(both, green_room));
     const double opaque = acts.look();
     acts.click(placeOf("Passthrough", true));
@@ -183,54 +170,45 @@ TEST_CASE_FIXTURE(AtWork,
         acts.click(onMethod(mode));
         looks.push_back(acts.look());
     }
-    const ViewRun run = runClean(work, "run", acts.script(), ahead + "1,0,0");
+    const ViewRun run = runClean(work, acts, kAfar + "1,0,0");
     CHECK(run.frames.at(run.pictureAt(opaque)).at("blend_mode") == "OPAQUE");
     for (const double seconds : looks) {
         CAPTURE(seconds);
         CHECK(run.frames.at(run.pictureAt(seconds)).at("blend_mode") == "ALPHA_BLEND");
         CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags") ==
               nlohmann::json::array({"blend_texture_source_alpha"}));
-        for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, seconds, side, green)); }
     }
-    for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, opaque, side, red)); }
+    for (const int side : {kLeft, kRight}) {
+        for (const double seconds : looks) { CHECK(isCorner(run, seconds, kGreenRoom, side)); }
+        CHECK(isCorner(run, opaque, kRed, side));
+    }
 
     // The scene itself looks the same over its own black as over a black room.
     Acts dark(begin(both, "0 0 0"));
     const double own = dark.look();
     dark.press("right b").click(placeOf("Passthrough", true)).press("right b");
     const double through = dark.look();
-    const ViewRun in_the_dark = runClean(work, "run", dark.script(), ahead + "0,0,0 --hide-panel");
-    CHECK(in_the_dark.layers(in_the_dark.pictureAt(own), "quad").empty());
-    CHECK(in_the_dark.frames.at(in_the_dark.pictureAt(through)).at("blend_mode") == "ALPHA_BLEND");
-    CHECK(in_the_dark.likeness(in_the_dark.pictureAt(own), in_the_dark.pictureAt(through)) > 40.0);
+    const ViewRun in_the_dark = runClean(work, dark, kAfar + "0,0,0 --hide-panel");
+    const std::size_t own_frame = in_the_dark.pictureAt(own), through_frame = in_the_dark.pictureAt(through);
+    CHECK(in_the_dark.layers(own_frame, "quad").empty());
+    CHECK(in_the_dark.frames[through_frame].at("blend_mode") == "ALPHA_BLEND");
+    CHECK(in_the_dark.likeness(own_frame, through_frame) > 40.0);
 
     // A headset that adds its light to the room's.
-    const ViewRun additive = runClean(work, "run", begin("additive", green_room) + "at 0.3 exit\n",
-                                      ahead + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
+    const ViewRun additive = runClean(work, begin("additive", green_room) + "at 0.3 exit\n",
+                                      kAfar + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(additive.frames.at(10).at("blend_mode") == "ADDITIVE");
-    CHECK(isCorner(additive, 0.2, kLeft, green));
+    CHECK(isCorner(additive, 0.2, kGreenRoom));
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "where the room is a layer, it lies below the scene while the wearer wants it, and its "
-                  "cameras rest otherwise") {
-    const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background 1,0,0";
+TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene while the wearer wants it") {
     Acts acts("rate 50\nsize 128 128\nframes every 5\npassthrough on\nroom-colour 0.2 0.9 0.4\n");
     const double opaque = acts.look();
     const double through = acts.click(placeOf("Passthrough", true)).look();
     const double again = acts.click(placeOf("Passthrough", true)).look();
     // The validation layer of OpenXR's SDK refuses layers that it does not know.
-    const ViewRun run =
-        runView(work, "run", acts.script(), ahead,
-                "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
-    INFO(run.outcome.output);
-    CHECK(these(run.outcome.exit_code, run.outcome.errors) == these(0, ""));
-    const auto corner = [&](double seconds) {
-        return colourAt(run.eye(run.pictureAt(seconds), kLeft), {0, 0});
-    };
-    const auto isNear = [](const Colour& a, const glm::vec3& b) {
-        return glm::length(glm::vec3(a[0], a[1], a[2]) - b) < 0.02f;
-    };
+    const ViewRun run = runView(work, "run", acts, kAfar + "1,0,0", kAlone);
+    checkEnded(run);
     for (const double seconds : {opaque, through, again}) {
         CAPTURE(seconds);
         const nlohmann::json& frame = run.frames.at(run.pictureAt(seconds));
@@ -238,24 +216,23 @@ TEST_CASE_FIXTURE(AtWork,
         CHECK(frame.at("blend_mode") == "OPAQUE");
         CHECK(frame.at("layers").at(0).at("type") == (sees ? "passthrough" : "projection"));
         CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags").empty() == !sees);
-        CHECK(isNear(corner(seconds), sees ? glm::vec3(0.2f, 0.9f, 0.4f) : glm::vec3(1.0f, 0.0f, 0.0f)));
+        CHECK(isCorner(run, seconds, sees ? kGreenRoom : kRed));
     }
     // A headset that blends pictures with the room by alpha does so.
     const ViewRun alpha = runClean(
-        work, "alpha",
+        work,
         "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
-        ahead + withConfig(work, "[view]\npassthrough = true\n"));
+        kAfar + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(alpha.frames.at(10).at("blend_mode") == "ALPHA_BLEND");
     CHECK(alpha.layers(10, "passthrough").empty());
 }
 
 TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no end") {
     fs::create_directories(work.base / "config");
-    std::ofstream(work.base / "config" / "user-dirs.dirs") << "XDG_PICTURES_DIR=\"/proc/no-such-folder\"\n";
+    work.write("../config/user-dirs.dirs", "XDG_PICTURES_DIR=\"/proc/no-such-folder\"\n");
     Acts acts("rate 50\nsize 64 64\nframes none\n");
     acts.click(placeOf("Picture")).wait(0.1);
-    const ViewRun run =
-        runClean(work, "nowhere", acts.script(), "builtin:one-splat --load-first --mode mono");
+    const ViewRun run = runClean(work, acts, "builtin:one-splat --load-first --mode mono");
     CHECK(run.says("/proc/no-such-folder: cannot be "));
 }
 
@@ -281,14 +258,14 @@ TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or el
     const glm::dvec3 up = tilt * builtinView("builtin:atelier")->up;
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));
     // These cameras were held differently, and decide.
-    std::ofstream(work.path / "trained" / "cameras.json")
-        << R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0],)"
-           R"( "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
+    work.write("trained/cameras.json",
+               R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0],)"
+               R"( "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])");
     for (const fs::path& source : {file, work.path / "trained"}) {
         CHECK(glm::length(upOf(source) - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5);
     }
     // A file that cannot be read counts as none.
-    std::ofstream(work.path / "trained" / "cameras.json") << "[{";
+    work.write("trained/cameras.json", "[{");
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));
 }
 

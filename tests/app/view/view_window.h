@@ -1,5 +1,4 @@
-// The viewer beside its window, on a display without a screen (Xvfb), with a mouse and keys that nobody
-// touches (xdotool).
+// The viewer beside its window, on a display without a screen (Xvfb), with a mouse and keys (xdotool).
 #pragma once
 
 #include "engine/similarity.h"
@@ -23,10 +22,10 @@ inline bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xd
 // A shell command, run in a folder.
 class Program {
 public:
-    Program(const std::filesystem::path& folder, const std::string& command)
+    Program(const fs::path& folder, const std::string& command)
         : pipe_(popen(fmt::format("cd '{}' && echo $$ && exec {} 2>&1", folder.string(), command).c_str(),
                       "re")) {
-        process_ = std::stoi(waitFor("\n"));
+        process_ = std::stoi(await("\n"));
     }
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
@@ -36,12 +35,13 @@ public:
         pclose(pipe_);
     }
 
-    // What it printed from the last awaited line up to the end of the next line that contains `words`; empty
-    // if there is none.
-    std::string waitFor(const std::string& words) {
+    // What it printed from the last awaited line up to the end of the next line that contains `words`, which
+    // must come.
+    std::string await(const std::string& words) {
         std::size_t found = said_.find(words, read_), end = std::string::npos;
         while (found == std::string::npos || (end = said_.find('\n', found)) == std::string::npos) {
-            if (!readMore()) { return {}; }
+            INFO(words << ": " << said_);
+            REQUIRE(readMore());
             found = said_.find(words, read_);
         }
         const std::string lines = said_.substr(read_, end + 1 - read_);
@@ -56,6 +56,13 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
     [[nodiscard]] const std::string& said() const { return said_; }
+    // It ends without an error, and says `last`.
+    void checkEnd(const std::string& last = "frames; ") {
+        CHECK(exitCode() == 0);
+        INFO(said_);
+        CHECK(contains(said_, last));
+        for (const char* bad : {"VUID", "SYNC-HAZARD", "no window"}) { CHECK_FALSE(contains(said_, bad)); }
+    }
 
 private:
     bool readMore() {
@@ -78,17 +85,16 @@ private:
 class Screen {
 public:
     // Before that it complains about display numbers that are taken.
-    explicit Screen(const std::filesystem::path& folder)
+    explicit Screen(const fs::path& folder)
         : folder_(folder),
           server_(folder,
                   fmt::format(
                       "sh -c 'exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null'",
                       kScreenPx.x, kScreenPx.y)),
-          name(":" + std::to_string(std::stoi(server_.waitFor("\n")))) {}
+          name(":" + std::to_string(std::stoi(server_.await("\n")))) {}
 
-    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-    // An X window dump with 32 bits per pixel: header, colour table, rows. The header's numbers have their
-    // highest byte first.
+    [[nodiscard]] const fs::path& folder() const { return folder_; }
+    // An X window dump of 32 bits a pixel: header, colours, rows. Its numbers have their highest byte first.
     [[nodiscard]] Image picture() const {
         const std::string bytes = textIn(folder_ / "Xvfb_screen0");
         const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(bytes.at(at)); };
@@ -100,30 +106,25 @@ public:
         constexpr std::size_t kBytesPerColour = 12;
         const std::size_t start = number(0) + kBytesPerColour * number(19), row_bytes = number(12);
         Image image{{number(4), number(5)}, 3, {}};
-        image.values.resize(3 * image.pixelCount());
         REQUIRE(bytes.size() >= start + row_bytes * image.size_px.y);
-        float* value = image.values.data();
-        for (std::size_t y = 0; y < image.size_px.y; ++y) {
-            const char* pixel = bytes.data() + start + y * row_bytes;
-            for (std::size_t x = 0; x < image.size_px.x; ++x, pixel += 4, value += 3) {
-                for (int i = 0; i < 3; ++i) {
-                    value[i] = static_cast<float>(static_cast<std::uint8_t>(pixel[2 - i])) / 255.0f;
-                }
+        for (std::size_t i = 0; i < image.pixelCount(); ++i) {
+            const std::size_t at = start + i / image.size_px.x * row_bytes + i % image.size_px.x * 4;
+            for (const std::size_t c : {2, 1, 0}) {
+                image.values.push_back(static_cast<float>(byte(at + c)) / 255.0f);
             }
         }
         return image;
     }
 
 private:
-    std::filesystem::path folder_;
+    fs::path folder_;
     Program server_;
 
 public:
     const std::string name;
 };
 
-// What Debian 12's xdotool cannot do, done with Xlib, which GLFW loads anyway; connected as long as the tests
-// run.
+// What Debian 12's xdotool cannot do, done with Xlib, which GLFW loads anyway.
 class XConnection {
 public:
     explicit XConnection(const std::string& name) {
@@ -140,8 +141,7 @@ public:
     }
     // What a window manager does when the user clicks the cross: it sends a message that the window may obey.
     void clickCross(unsigned long window) const {
-        // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a
-        // number.
+        // XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a number.
         send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32,
                       atomOf("WM_DELETE_WINDOW")});
     }
@@ -250,16 +250,16 @@ inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
 }
 
 // The viewer beside its window.
-class Viewer {
+class Viewer : public Program {
 public:
     Viewer(const Workplace& work, const std::string& script, const std::string& options = "", int dpi = 96)
-        : program_(
-              (std::ofstream(work.path / "desk.script") << script, work.path),
+        : Program(
+              (work.write("desk.script", script), work.path),
               viewOnDesk("builtin:slanted-wall --load-first --mode mono --simulate desk.script --out seen " +
                              options,
                          dpi)) {
         // While the scene loads, the panel has another layout.
-        REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
+        await("shows builtin:slanted-wall");
         // Keys go to the window that contains the mouse.
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
     }
@@ -267,9 +267,7 @@ public:
     // Hides or shows the panel: once that is done, everything before has reached the viewer.
     std::string tab() {
         hands("key Tab");
-        const std::string lines = program_.waitFor("panel = ");
-        CHECK(lines != "");
-        return lines;
+        return await("panel = ");
     }
     // One after another; each arrives before the next is sent.
     void handsInTurn(const std::vector<std::string>& all) {
@@ -288,32 +286,12 @@ public:
     // Where the wearer's room is now, according to the viewer's saved settings.
     Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
-        REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");
-        const std::string text =
-            textIn(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
-        const auto valueOf = [&](const std::string& key) {
-            const std::size_t at = text.find(key + " = ");
-            REQUIRE(at != std::string::npos);
-            const std::size_t begin = at + key.size() + 3;
-            return nlohmann::json::parse(text.substr(begin, text.find('\n', begin) - begin));
-        };
-        const auto p = valueOf("scene-position").get<std::array<double, 3>>();
-        const auto q = valueOf("scene-orientation").get<std::array<double, 4>>();
-        return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}, valueOf("units-per-metre").get<double>()};
+        await("slanted-wall.view.toml");
+        const auto p = savedOfWall(work, "scene-position").get<std::array<double, 3>>();
+        const auto q = savedOfWall(work, "scene-orientation").get<std::array<double, 4>>();
+        const auto scale = savedOfWall(work, "units-per-metre").get<double>();
+        return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}, scale};
     }
-    // It ends without an error.
-    void checkEnd() {
-        CHECK(program_.exitCode() == 0);
-        INFO(program_.said());
-        CHECK(program_.said().find("frames; ") != std::string::npos);
-        CHECK(these(program_.said().find("VUID"), program_.said().find("no window")) ==
-              these(std::string::npos, std::string::npos));
-    }
-
-    [[nodiscard]] Program& program() { return program_; }
-
-private:
-    Program program_;
 };
 
 }  // namespace binosplat::test

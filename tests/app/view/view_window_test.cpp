@@ -1,10 +1,7 @@
-// Facts about the window alongside the headset: what mouse, keys and files do there, what it shows, and how
-// it ends.
+// Facts about the window alongside the headset: what mouse, keys and files do, and how it ends.
 #include "tests/app/view/view_window.h"
 #include "app/view/window/mirror_window.h"
 #include "tests/app/view/unchanged_shaders.h"
-
-#include <GLFW/glfw3.h>
 
 #include <chrono>
 #include <thread>
@@ -18,49 +15,19 @@ std::string onDesk() {
     return "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= DISPLAY=" + desk().screen.name;
 }
 
-// In the fork that is the viewer: files, separated by colons, that are dropped once it shows frames, and,
-// after a comma, files dropped a second and a half later. How a desktop and a window talk to each other
-// during a drop is up to GLFW; here GLFW only reports that it happened.
-constexpr const char* kDropped = "BINOSPLAT_TEST_DROPPED";
-
-// Also in the fork: the log of frames. Once, the window's events hold up the program for some of them.
+// In the fork that is the viewer, the window's events once hold it up for some frames of this log.
 constexpr const char* kHeldUntil = "BINOSPLAT_TEST_HELD_UNTIL";
-constexpr std::size_t kFramesHeld = 60;
+constexpr std::ptrdiff_t kFramesHeld = 60;
 
-GLFWwindow* window_of_drop = nullptr;
-GLFWdropfun tell_of_drop = nullptr;
-
-template <typename Function>
-Function next(const char* name) {
-    return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
-}
-
-std::vector<std::string> splitAt(const std::string& list, char mark) {
-    std::vector<std::string> parts;
-    std::istringstream stream(list);
-    for (std::string part; std::getline(stream, part, mark);) { parts.push_back(part); }
-    return parts;
-}
-
-void drop(const std::string& list) {
-    const std::vector<std::string> files = splitAt(list, ':');
-    std::vector<const char*> paths;
-    for (const std::string& file : files) { paths.push_back(file.c_str()); }
-    tell_of_drop(window_of_drop, static_cast<int>(paths.size()), paths.data());
-}
-
-std::ptrdiff_t countFrames(const std::string& log) {
-    std::ifstream file(log);
-    return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
-}
+std::ptrdiff_t countFrames(const std::string& log) { return std::ranges::count(textIn(log), '\n'); }
 
 // It gives up eventually if the program does not show a frame meanwhile.
 void holdUp() {
     static bool is_over = false;
     const char* const log = std::getenv(kHeldUntil);
-    if (log == nullptr || window_of_drop == nullptr || std::exchange(is_over, true)) { return; }
+    if (log == nullptr || std::exchange(is_over, true)) { return; }
     const auto latest = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
-    const std::ptrdiff_t enough = countFrames(log) + static_cast<std::ptrdiff_t>(kFramesHeld);
+    const std::ptrdiff_t enough = countFrames(log) + kFramesHeld;
     while (countFrames(log) < enough) {
         if (std::chrono::steady_clock::now() > latest) { return; }
         std::this_thread::yield();
@@ -68,26 +35,24 @@ void holdUp() {
     std::ofstream(std::string(log) + ".went-on");
 }
 
-// The eye's picture from the magnified one in the window: the window's pixels that are nearest to the middles
-// of the eye's.
+// The eye's picture from the magnified one: the window's pixels nearest to the middles of the eye's.
 Image eyeInWindow(const Image& screen, glm::uvec2 eye_px) {
     Image eye{eye_px, 3, {}};
     const glm::dvec2 scale = glm::dvec2(kEyePx) / glm::dvec2(eye_px);
-    for (std::uint32_t y = 0; y < eye_px.y; ++y) {
-        for (std::uint32_t x = 0; x < eye_px.x; ++x) {
-            const auto colour = colourAt(screen, glm::uvec2(scale * (glm::dvec2(x, y) + 0.5)));
-            eye.values.insert(eye.values.end(), colour.begin(), colour.end());
-        }
+    for (std::size_t i = 0; i < eye.pixelCount(); ++i) {
+        const glm::dvec2 at = scale * (glm::dvec2(i % eye_px.x, i / eye_px.x) + 0.5);
+        const auto colour = colourAt(screen, glm::uvec2(at));
+        eye.values.insert(eye.values.end(), colour.begin(), colour.end());
     }
     return eye;
 }
 
 // From the last composed picture.
-Image lastLeftEye(const std::filesystem::path& folder) {
+Image lastLeftEye(const fs::path& folder) {
     ViewRun run;
     run.out = folder;
-    std::filesystem::path last;
-    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    fs::path last;
+    for (const auto& file : fs::directory_iterator(folder)) {
         if (file.path().extension() == ".png") { last = std::max(last, file.path()); }
     }
     return run.eye(std::stoul(last.stem().string().substr(6)), kLeft);
@@ -117,15 +82,13 @@ void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
                               numberOfWindow("^binosplat$", "HEIGHT"));
         CHECK(glm::all(glm::lessThan(glm::abs(size - scale * whole), glm::dvec2(2.0))));
         CHECK(glm::all(glm::lessThanEqual(size, glm::dvec2(kScreenPx))));
-        const auto [resizes, keeps_shape] =
-            desk(dpi).connection.resizesInShape(numberOfWindow("^binosplat$", "WINDOW"));
-        CHECK(resizes);
-        CHECK(keeps_shape);
+        CHECK(desk(dpi).connection.resizesInShape(numberOfWindow("^binosplat$", "WINDOW")) ==
+              std::pair(true, true));
         // The widgets are where they are drawn.
         viewer.handsInTurn(
             {moveTo(scale * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)),
              "mousedown 1", "mouseup 1"});
-        CHECK(viewer.program().waitFor("vignette = false") != "");
+        viewer.await("vignette = false");
     }
     if (by_cross) {
         clickCross("^binosplat$");
@@ -138,65 +101,42 @@ void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
 const std::string kOff = "at -1 worn off\n", kElsewhere = "at -1 visible off\n",
                   kGone = "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
 
-// The linker prefers these two to GLFW's own.
-extern "C" GLFWdropfun glfwSetDropCallback(GLFWwindow* window, GLFWdropfun callback) {
-    window_of_drop = window;
-    tell_of_drop = callback;
-    return next<decltype(&glfwSetDropCallback)>("glfwSetDropCallback")(window, callback);
-}
-
+// The linker prefers this one to GLFW's own.
 extern "C" void glfwWaitEventsTimeout(double seconds) {
-    static std::vector<std::string> drops;
-    static std::chrono::steady_clock::time_point next_drop;
-    next<decltype(&glfwWaitEventsTimeout)>("glfwWaitEventsTimeout")(seconds);
+    reinterpret_cast<decltype(&glfwWaitEventsTimeout)>(dlsym(RTLD_NEXT, "glfwWaitEventsTimeout"))(seconds);
     holdUp();
-    const char* const files = std::getenv(kDropped);
-    if (files == nullptr || tell_of_drop == nullptr) { return; }
-    if (next_drop == std::chrono::steady_clock::time_point()) {
-        if (countFrames("dropped/frames.jsonl") == 0) { return; }
-        drops = splitAt(files, ',');
-    }
-    if (drops.empty() || std::chrono::steady_clock::now() < next_drop) { return; }
-    next_drop = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
-    drop(drops.front());
-    drops.erase(drops.begin());
 }
 
-TEST_CASE(
-    "frames go on while the window's events hold its thread up, as they do on Windows while it is dragged") {
+TEST_CASE_FIXTURE(AtWork, "frames go on while the window's events hold its thread up") {
     if (!haveScreen() || run_in_fork == nullptr) { return; }
-    const Workplace work;
     const ViewRun run = runView(work, "dragged", kSmall + "at 3 exit\n", kScene,
                                 onDesk() + " " + kHeldUntil + "=dragged/frames.jsonl");
     INFO(run.outcome.output);
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-    CHECK(run.frames.size() > kFramesHeld);
+    CHECK(std::ssize(run.frames) > kFramesHeld);
     CHECK_FALSE(run.says("no window"));
-    CHECK(std::filesystem::exists(work.path / "dragged" / "frames.jsonl.went-on"));
+    CHECK(fs::exists(work.path / "dragged" / "frames.jsonl.went-on"));
 }
 
-TEST_CASE(
-    "the last of the scenes dropped on the window is shown, and one that cannot be read is named and changes "
-    "nothing") {
-    if (!haveScreen() || run_in_fork == nullptr) { return; }
-    const Workplace work;
-    for (const char* name : {"a", "b"}) {
-        REQUIRE(work.run(fmt::format("scene one-splat --out {}.ply", name)).exit_code == 0);
-    }
-    std::ofstream(work.path / "broken.ply") << "ply\nnonsense\n";
-    const ViewRun run =
-        runView(work, "dropped", "rate 45\nsize 64 64\nframes none\nat 4 exit\n", kScene,
-                onDesk() + " SIMULATED_OPENXR_CLOCK=real " + kDropped + "=a.ply:b.ply,broken.ply");
-    INFO(run.outcome.output);
-    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-    checkOrder(run, {"shows b.ply", "broken.ply:"});
-    CHECK_FALSE(run.says("a.ply"));
-    CHECK_FALSE(run.says("shows broken.ply"));
-}
-
-TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
+TEST_CASE_FIXTURE(AtWork, "the last of the scenes dropped on the window is shown, a broken one is not") {
     if (!haveScreen()) { return; }
-    const Workplace work;
+    for (const char* name : {"a", "b"}) { work.go(fmt::format("scene one-splat --out {}.ply", name)); }
+    work.write("broken.ply", "ply\nnonsense\n");
+    Viewer viewer(work, kSmall);
+    const unsigned long window = numberOfWindow("^binosplat$", "WINDOW");
+    desk().connection.drop(window, {work.path / "a.ply", work.path / "b.ply"});
+    viewer.await("shows " + (work.path / "b.ply").string());
+    desk().connection.drop(window, {work.path / "broken.ply"});
+    viewer.await("broken.ply:");
+    hands("key Escape");
+    viewer.checkEnd();
+    for (const std::string& bad : {std::string("/a.ply"), "shows " + (work.path / "broken.ply").string()}) {
+        CHECK_FALSE(contains(viewer.said(), bad));
+    }
+}
+
+TEST_CASE_FIXTURE(AtWork, "a mouse that lies on the panel leaves it to the hands") {
+    if (!haveScreen()) { return; }
     hands(moveTo({900.0, 650.0}));
     Acts acts("rate 90\nsize 64 64\nframes none\n");
     acts.click(placeOf("Quit")).wait(1.0);
@@ -208,18 +148,15 @@ TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     CHECK(run.endSeconds() < acts.now_s - 0.5);
 }
 
-TEST_CASE(
-    "a lost device ends the viewer with three, also beside a window; of a lost display only the window is "
-    "gone") {
+TEST_CASE_FIXTURE(AtWork, "a lost device ends the viewer, of a lost display only the window is gone") {
     if (!haveScreen()) { return; }
-    const Workplace work;
     const std::string script = "rate 90\nsize 64 64\nframes none\nat 1 exit\n";
     const ViewRun device =
         runView(work, "device", script, kScene, withFaults("BINOSPLAT_FAULT=submit:30:lost", onDesk()));
     INFO(device.outcome.output);
     CHECK(device.outcome.exit_code == 3);
     CHECK_FALSE(device.says("no window"));
-    CHECK(device.outcome.errors.find("DeviceLost") != std::string::npos);
+    CHECK(contains(device.outcome.errors, "DeviceLost"));
     const ViewRun display = runView(work, "display", script, kScene,
                                     withFaults("BINOSPLAT_FAULT=present:5:surface-lost", onDesk()));
     INFO(display.outcome.output);
@@ -228,22 +165,19 @@ TEST_CASE(
     CHECK(display.frames.size() > 80);
 }
 
-TEST_CASE("mouse and keys do in the window what hands do in the headset, and it shows what the eye sees") {
+TEST_CASE_FIXTURE(AtWork, "mouse and keys do in the window what hands do, and it shows what the eye sees") {
     if (!haveScreen()) { return; }
-    const Workplace work;
     writeCompilerOfChangedShaders(work.path / "tools");
     Viewer viewer(work, "rate 30\nsize 192 192\nframes all\n",
                   "--shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
-    Program& program = viewer.program();
 
     // The panel by mouse: a click on a switch, and another on the same one.
     viewer.click(placeOf("Vignette", true));
-    CHECK(program.waitFor("vignette = false") != "");
+    viewer.await("vignette = false");
     viewer.click(placeOf("Vignette", true));
-    CHECK(program.waitFor("vignette = true") != "");
+    viewer.await("vignette = true");
 
-    // Dragging by 100 pixels to the left turns by 0.4 radians, in however many frames; the scene follows the
-    // mouse to the left.
+    // Dragging by 100 pixels turns by 0.4 radians; the scene follows the mouse to the left.
     const glm::dvec2 place(300.0, 300.0), beside(400.0, 300.0);
     const Similarity start = viewer.placement(work);
     viewer.drag(1, beside, place);
@@ -283,12 +217,12 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
 
     // R recentres the room at the head.
     hands("key r");
-    CHECK(program.waitFor("the room now begins where the wearer stands") != "");
+    viewer.await("the room now begins where the wearer stands");
 
     // The window shows what the dominant eye sees, also after a reload of shaders, some frames later.
-    if (viewer.tab().find("panel = true") != std::string::npos) { viewer.tab(); }
+    if (contains(viewer.tab(), "panel = true")) { viewer.tab(); }
     hands("key F5");
-    CHECK(program.waitFor(" shaders reloaded in ") != "");
+    viewer.await(" shaders reloaded in ");
     for (int i = 0; i < 6; ++i) { viewer.tab(); }
     const Image screen = desk().screen.picture();
 
@@ -300,9 +234,10 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     CHECK(compare(eyeInWindow(screen, seen.size_px), seen).psnrDb() > 35.0);
     // Next to it is the panel, which has many colours.
     std::set<Colour> colours;
-    const auto isNew = [&](const Colour& colour, const Colour&) { return colours.insert(colour).second; };
     const Image panel = partOf(screen, {kEyePx, 0}, glm::uvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
-    CHECK(countPixels(panel, panel, isNew) > 10);
+    CHECK(countPixels(panel, panel, [&](const Colour& colour, const Colour&) {
+              return colours.insert(colour).second;
+          }) > 10);
 }
 
 TEST_CASE("Escape, and the window's cross, end it while the headset is off, not looked at or gone") {
@@ -312,40 +247,26 @@ TEST_CASE("Escape, and the window's cross, end it while the headset is off, not 
     checkEnds(kGone, false);
 }
 
-TEST_CASE(
-    "Escape, and the window's cross, end it while the headset is off, not looked at or gone, the other way "
-    "round" *
-    nightly()) {
-    if (!haveScreen()) { return; }
-    checkEnds(kOff, true);
-    checkEnds(kElsewhere, false);
-    checkEnds(kGone, true);
-}
-
 TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
     if (!haveScreen()) { return; }
     for (const bool by_cross : {false, true}) {
         CAPTURE(by_cross);
         const Workplace work;
-        std::ofstream(work.path / "never.script") << "no-headset-for 1000000\n";
+        work.write("never.script", "no-headset-for 1000000\n");
         Program program(work.path, viewOnDesk("builtin:slanted-wall --simulate never.script"));
-        REQUIRE(program.waitFor("has no headset yet") != "");
+        program.await("has no headset yet");
         if (by_cross) {
             clickCross("^binosplat is waiting for a headset");
         } else {
             hands("search --sync --onlyvisible --name '^binosplat is waiting' mousemove --window %1 20 20");
             hands("key Escape");
         }
-        CHECK(program.exitCode() == 0);
-        INFO(program.said());
-        CHECK(program.said().find("stopped before there was a headset") != std::string::npos);
+        program.checkEnd("stopped before there was a headset");
     }
 }
 
 // The last test: once the test program has a device of its own, it is not forked any more.
-TEST_CASE(
-    "a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is "
-    "gone") {
+TEST_CASE("a picture of a given-up frame is drawn in the next; a window that nobody can draw on is gone") {
     if (!haveScreen()) { return; }
     setenv("DISPLAY", desk().screen.name.c_str(), 1);
     unsetenv("WAYLAND_DISPLAY");

@@ -55,27 +55,21 @@ TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Gree
     for (const unsigned letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
         CHECK_MESSAGE(isThere(letter), letter);
     }
-    // What the font does not have yet is shown as a box: Chinese, bytes that are not UTF-8, and letters
-    // beyond 16 bits.
+    // A box stands for what the font does not have yet, for bytes that are not UTF-8, and beyond 16 bits.
     REQUIRE(isThere(0x25a1));
     const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
     CHECK(these(font.FindGlyph(0x4e2d), font.FindGlyph(0xfffd)) == these(glyphOf(0x25a1), glyphOf(0x25a1)));
 }
 
-TEST_CASE(
-    "names bring their letters along, those that no font has stay boxes, and what is on the panel stays "
-    "where it is") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "names bring their letters along, those of no font stay boxes, nothing moves") {
     PanelSketch sketch;
     const WidgetPlaces before = sketch.draw().places;
     CHECK_FALSE(isThere(0x5d0));
     // Hebrew, Georgian, private letters
-    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xef\xa3\xbf";
+    sketch.status.message = "\u05d0 \u10d0 \ufdff\uf8ff";
     CHECK(sketch.draw().places == before);
-    CHECK(isThere(0x5d0));
-    CHECK(isThere(0x10d0));
-    CHECK_FALSE(isThere(0xf8ff));
-    CHECK(isThere('A'));
+    CHECK(these(isThere(0x5d0), isThere(0x10d0), isThere(0xf8ff), isThere('A')) ==
+          these(true, true, false, true));
     CHECK_FALSE(sketch.bringLetters(sketch.status.message));  // once
     CHECK_FALSE(sketch.bringLetters("\xff\xef\xbf\xbd plain"));
     // They stay, whatever is shown next. Chinese comes from the first font of the system that has it.
@@ -114,23 +108,20 @@ TEST_CASE("the system says which fonts have a letter, and for no letter it says 
     for (const SystemFont& font : fonts) { CHECK(fs::exists(font.file)); }
 }
 
-TEST_CASE(
-    "Hebrew and Arabic are read from right to left, and Arabic letters are joined, before a font has formed "
-    "them, too") {
-    CHECK(asShown("plain \xc3\xa9 \xd0\x96.ply") == "plain \xc3\xa9 \xd0\x96.ply");
-    // Alef, bet and gimel within a path: gimel comes first, and the path keeps its order.
-    CHECK(asShown("/a/\xd7\x90\xd7\x91\xd7\x92/b.ply") == "/a/\xd7\x92\xd7\x91\xd7\x90/b.ply");
-    // Beh, alef: alef's final form, then beh's initial one.
-    CHECK(asShown("\xd8\xa8\xd8\xa7") == "\xef\xba\x8e\xef\xba\x91");
-    // Lam and alef form one glyph.
-    CHECK(asShown("\xd9\x84\xd8\xa7") == "\xef\xbb\xbb");
+TEST_CASE("Hebrew and Arabic are read from right to left and joined, also before a font has formed them") {
+    for (const auto& [text, shown] :
+         {std::pair("plain \u00e9 \u0416.ply", "plain \u00e9 \u0416.ply"),
+          // Alef, bet and gimel within a path: gimel comes first, and the path keeps its order.
+          std::pair("/a/\u05d0\u05d1\u05d2/b.ply", "/a/\u05d2\u05d1\u05d0/b.ply"),
+          // Beh, alef: alef's final form, then beh's initial one. Lam and alef form one glyph.
+          std::pair("\u0628\u0627", "\ufe8e\ufe91"), std::pair("\u0644\u0627", "\ufefb")}) {
+        CHECK(asShown(text) == shown);
+    }
     // Bytes that are not UTF-8 do no harm.
-    CHECK(asShown("\xd7\xff\xf0\x9f").find("\xef\xbf\xbd") != std::string::npos);
+    CHECK(contains(asShown("\xd7\xff\xf0\x9f"), "\ufffd"));
 }
 
-TEST_CASE(
-    "letters that change with those beside them are formed and ordered by the font, from right to left where "
-    "they are read so") {
+TEST_CASE("letters that change with those beside them are formed and ordered by the font") {
     PanelSketch sketch;
     const std::string beh = "\xd8\xa8", alef = "\xd8\xa7";
     // All at once, so each glyph has one number.
@@ -158,8 +149,7 @@ TEST_CASE(
     CHECK(of(ksha).size() == 1);
 }
 
-TEST_CASE(
-    "a word's signs are drawn, keep their order among other letters, and are nobody's private letters") {
+TEST_CASE("a word's signs are drawn, keep their order, and are nobody's private letters") {
     PanelSketch sketch;
     const std::string shalom = "\xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d";
     const auto signs = signsOf(sketch, shalom);
@@ -195,8 +185,7 @@ TEST_CASE(
     CHECK(isThere('A'));
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "without a font that can be used the small built-in one is, and one line says why") {
+TEST_CASE_FIXTURE(AtWork, "without a usable font there is the small built-in one, and one line says why") {
     const std::string whole = vectorFont();
     work.write("text.ttf", "no font at all");
     work.write("short.ttf", whole.substr(0, whole.size() / 2));
@@ -206,7 +195,7 @@ TEST_CASE_FIXTURE(AtWork,
         setenv("BINOSPLAT_FONT", (work.path / name).c_str(), 1);
         PanelSketch sketch;
         CHECK(sketch.font->complaint().starts_with("the panel is written in a small built-in font: "));
-        CHECK(sketch.font->complaint().find(name) != std::string::npos);
+        CHECK(contains(sketch.font->complaint(), name));
         CHECK(sketch.font->complaint().find('\n') == std::string::npos);
         sketch.settings.page = PanelPage::kMethod;
         CHECK(sketch.click("shared").places.contains("Quit"));
@@ -220,8 +209,7 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
     REQUIRE(isFont(whole));
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{12},
                                     std::size_t{40}, whole.size() - 1}) {
-        CAPTURE(bytes);
-        CHECK_FALSE(isFont(whole.substr(0, bytes)));
+        CHECK_MESSAGE(!isFont(whole.substr(0, bytes)), bytes);
     }
     std::string nameless = whole;
     nameless.replace(nameless.find("cmap"), 4, "xxxx");
@@ -234,16 +222,23 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
         return bytes;
     };
     std::string moved = whole;
-    const auto byteAt = [&](std::size_t at) { return static_cast<unsigned char>(moved[at]); };
-    for (std::size_t record = 12; record < 12 + 16 * (256u * byteAt(4) + byteAt(5)); record += 16) {
-        std::uint32_t offset = 0;
-        for (std::size_t i = 8; i < 12; ++i) { offset = offset << 8 | byteAt(record + i); }
-        moved.replace(record + 8, 4, number(offset + 16));
+    const auto numberAt = [&](std::size_t at, std::size_t bytes) {
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < bytes; ++i) {
+            value = value << 8 | static_cast<unsigned char>(moved[at + i]);
+        }
+        return value;
+    };
+    for (std::size_t record = 12; record < 12 + 16 * numberAt(4, 2); record += 16) {
+        moved.replace(record + 8, 4, number(numberAt(record + 8, 4) + 16));
     }
     CHECK(isFont("ttcf" + number(0x00010000) + number(1) + number(16) + moved));
-    CHECK_FALSE(isFont("ttcf" + number(0x00030000) + number(1) + number(16) + moved));
-    CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(0) + number(16) + moved));
-    CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(1) + number(0x7fffffff) + moved));
+    // Of an unknown version, with no font, and with one that lies outside.
+    for (const std::string& head :
+         {number(0x00030000) + number(1) + number(16), number(0x00010000) + number(0) + number(16),
+          number(0x00010000) + number(1) + number(0x7fffffff)}) {
+        CHECK_FALSE(isFont("ttcf" + head + moved));
+    }
 }
 
 }  // SUITE(letters)

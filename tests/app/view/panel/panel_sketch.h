@@ -1,5 +1,4 @@
-// The viewer's panel without a device: what it would draw, where its widgets are, and what a click on them
-// does.
+// The viewer's panel without a device: what it draws, where its widgets are, what a click does.
 #pragma once
 
 #include "app/view/panel/panel_content.h"
@@ -37,9 +36,8 @@ public:
         status.pictures = &font->pictures();
         ImGuiIO& io = ImGui::GetIO();
         constexpr float kNowhere = -std::numeric_limits<float>::max();
-        io.MousePos = pointer != nullptr
-                          ? ImVec2(static_cast<float>(pointer->x), static_cast<float>(pointer->y))
-                          : ImVec2(kNowhere, kNowhere);
+        const glm::vec2 at = pointer != nullptr ? glm::vec2(*pointer) : glm::vec2(kNowhere);
+        io.MousePos = ImVec2(at.x, at.y);
         io.MouseDown[0] = pressed;
         io.DeltaTime = 0.01f;
         ImGui::NewFrame();
@@ -129,6 +127,7 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
     return shareOf(places[static_cast<std::size_t>(page)][with_all ? 1 : 0], name);
 }
 
+inline glm::dvec2 onScenes(const std::string& name) { return placeOf(name, false, PanelPage::kScenes); }
 // On the page of methods, with which the panel opens if the config says panel-page = "method".
 inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) {
     return placeOf(name, with_all, PanelPage::kMethod);

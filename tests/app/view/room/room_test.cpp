@@ -47,9 +47,7 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
     }
 }
 
-TEST_CASE(
-    "an arc is opaque along its bends and nowhere else, has no gap between its pieces, and is red where one "
-    "cannot stand") {
+TEST_CASE("an arc is opaque along its bends and nowhere else, without gaps, and red where it is blocked") {
     const glm::dvec3 eye(0.0), from(0.25, 0.35, 0.3), speed(0.3, -2.0, 6.0);
     constexpr double kSteps = kArcPieces * kPointsOfPiece;
     const auto thrown = [&](double at) {

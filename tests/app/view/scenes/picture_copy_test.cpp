@@ -56,8 +56,7 @@ TEST_CASE_FIXTURE(Gpu, "a copy shows what the view saw of the picture, however m
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a frame that was not drawn leaves no copy, and others than the one that was asked change nothing") {
+TEST_CASE_FIXTURE(Gpu, "a frame that was not drawn leaves no copy, nor does one that was dropped") {
     const Painted first(*this, {16, 16}, true), later(*this, {48, 37}, true);
     PictureCopy copy(context());
     CHECK(copy.take() == nullptr);
@@ -71,11 +70,7 @@ TEST_CASE_FIXTURE(
     CHECK_FALSE(copy.ask());
     CHECK(copy.ask());
     CHECK(copy.take()().size_px == glm::uvec2(16, 16));
-}
-
-TEST_CASE_FIXTURE(Gpu, "a copy that was dropped is not taken for the next one") {
-    const Painted first(*this, {16, 16}, true), later(*this, {48, 37}, true);
-    PictureCopy copy(context());
+    // One that was dropped is not taken for the next one.
     CHECK_FALSE(copy.ask());
     run([&](Commands& commands) { copy.record(commands, first.picture, first.eye, first.eye); });
     copy.drop();

@@ -2,15 +2,12 @@
 // line says why not. Also about remembered places.
 #include "app/view/scenes/shown_scene.h"
 #include "app/options/modes.h"
-#include "app/view/panel/canvas.h"
-#include "app/view/panel/panel_content.h"
-#include "app/view/panel/panel_style.h"
 #include "app/view/scenes/viewpoint_list.h"
 #include "app/view/settings/view_files.h"
 #include "engine/builtin/procedural.h"
 #include "engine/files/load_scene.h"
 #include "engine/files/ply.h"
-#include "tests/engine/gpu/device_image.h"
+#include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
 
 #ifdef BINOSPLAT_SOG
@@ -21,26 +18,14 @@
 
 SUITE(shown_scene) {
 
-struct Shown : Gpu, Workplace {
-    using Workplace::run, Workplace::write;
+struct Shown : Gpu, Home {
+    using Home::run, Home::write;
 
-    Shown() {
-        setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1);
-        options.scene = "builtin:step-edge";
-    }
-    ~Shown() { unsetenv("XDG_CONFIG_HOME"); }
+    Shown() { options.scene = "builtin:step-edge"; }
 
-    // One line says why, and the scene stays as it was.
-    void checkRefused(ShownScene& scenes, const fs::path& place, const std::string& part) {
-        CAPTURE(place);
-        const LoadedScene* before = scenes.get();
-        scenes.begin(place.string());
-        const std::string complaint = scenes.take(state);
-        INFO(complaint);
-        CHECK(complaint.starts_with(place.string() + ": "));
-        CHECK(complaint.find(part) != std::string::npos);
-        CHECK(complaint.find('\n') == std::string::npos);
-        CHECK(scenes.get() == before);
+    void show(ShownScene& scenes, const std::string& place) {
+        scenes.begin(place);
+        REQUIRE(scenes.take(state).empty());
     }
 
     ViewOptions options;
@@ -57,13 +42,20 @@ TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was s
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
     CHECK(scenes.name() == "builtin:step-edge");
+    const LoadedScene* const before = scenes.get();
     write("notes.txt", "no scene");
     fs::create_directory(path / "pictures");
     REQUIRE(mkfifo((path / "pipe.ply").c_str(), 0600) == 0);
-    checkRefused(scenes, path / "notes.txt", "not a scene file of a known format");
-    checkRefused(scenes, path / "pictures", "is a directory, expected one with");
-    checkRefused(scenes, path / "pipe.ply", "is not a regular file");
-    checkRefused(scenes, path / "gone.ply", "no such file");
+    for (const auto& [name, part] :
+         {std::pair("notes.txt", "not a scene file of a known format"),
+          std::pair("pictures", "is a directory, expected one with"),
+          std::pair("pipe.ply", "is not a regular file"), std::pair("gone.ply", "no such file")}) {
+        scenes.begin(at(name));
+        const std::string complaint = scenes.take(state);
+        CHECK(complaint.starts_with(at(name) + ": "));
+        CHECK_MESSAGE(contains(complaint, part), complaint);
+        CHECK(these(contains(complaint, "\n"), scenes.get() == before) == these(false, true));
+    }
     CHECK_FALSE(scenes.loading().has_value());
 }
 
@@ -73,21 +65,16 @@ TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or 
     for (const auto& [name, bytes] : makeSog()) { write("statue/" + name, bytes); }
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
-    for (const std::string& place : {(path / "statue").string(), (path / "statue").string() + "/",
-                                     (path / "statue" / "meta.json").string()}) {
+    for (const std::string& place : {at("statue"), at("statue") + "/", at("statue/meta.json")}) {
         CAPTURE(place);
-        scenes.begin(place);
-        CHECK(scenes.take(state).empty());
-        CHECK(scenes.name() == place);
-        CHECK(scenes.get()->facts.splats == 8);
+        show(scenes, place);
+        CHECK(these(scenes.name(), scenes.get()->facts.splats) == these(place, 8));
         CHECK(scenes.get()->facts.file_bytes > 0);
     }
 }
 #endif
 
-TEST_CASE_FIXTURE(Shown,
-                  "one that was asked for while another came takes its place, and if it cannot be read the "
-                  "first comes after all") {
+TEST_CASE_FIXTURE(Shown, "the last scene asked for comes; if it cannot be read, the one before does") {
     ShownScene scenes(context(), options, log);
     scenes.begin("builtin:fence");
     scenes.begin("builtin:slanted-wall");
@@ -95,24 +82,21 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(scenes.name() == "builtin:slanted-wall");
     CHECK_FALSE(scenes.loading().has_value());
     ShownScene others(context(), options, log);
-    others.begin((path / "gone.ply").string());
-    CHECK(others.take(state).find("gone.ply: no such file") != std::string::npos);
+    others.begin(at("gone.ply"));
+    CHECK(contains(others.take(state), "gone.ply: no such file"));
     CHECK(others.get() == nullptr);
     CHECK(others.take(state).empty());
     CHECK(others.name() == "builtin:step-edge");
     // The scene of the command line has nothing to fall back to.
-    options.scene = (path / "gone.ply").string();
+    options.scene = at("gone.ply");
     ShownScene none(context(), options, log);
     CHECK_THROWS_AS(static_cast<void>(none.take(state)), Error);
 }
 
-TEST_CASE_FIXTURE(Shown,
-                  "a place belongs to the scene that it was given with: others start at their own, or where "
-                  "they were saved") {
+TEST_CASE_FIXTURE(Shown, "a place belongs to its scene: others start at their own or saved one") {
     const auto startOf = [&](const std::string& scene, const ViewOptions& given) {
         ShownScene scenes(context(), given, log);
-        scenes.begin(scene);
-        REQUIRE(scenes.take(state).empty());
+        show(scenes, scene);
         return state.sceneFromRoom();
     };
     const Similarity own = startOf("builtin:step-edge", options), other = startOf("builtin:fence", options);
@@ -130,18 +114,15 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(same(startOf("builtin:step-edge", options), given));
 }
 
-TEST_CASE_FIXTURE(Shown,
-                  "a remembered place that is of no use is one line, the scene is shown at its start, saving "
-                  "mends the file") {
+TEST_CASE_FIXTURE(Shown, "a remembered place of no use is one line, and saving mends the file") {
     const fs::path file = viewSettingsFile(options.scene);
-    const auto showAgain = [&](std::string& complaint) {
+    // What it complains of, and whether the wearer is at the scene's start.
+    const auto showAgain = [&] {
         ShownScene scenes(context(), options, log);
-        complaint = scenes.take(state);
-        return same(state.sceneFromRoom(), scenes.get()->start);
+        const std::string complaint = scenes.take(state);
+        return std::pair(complaint, same(state.sceneFromRoom(), scenes.get()->start));
     };
-    std::string complaint;
-    CHECK(showAgain(complaint));
-    CHECK(complaint.empty());
+    CHECK(showAgain() == std::pair(std::string(), true));
     ViewSettings moved = state.withPlacement();
     moved.scene_from_room->position += glm::dvec3(1.0, 2.0, 3.0);
     const auto spoil = [&](const std::string& text) {
@@ -150,10 +131,9 @@ TEST_CASE_FIXTURE(Shown,
         std::ofstream(file, std::ios::binary) << text;
     };
     const auto checkSaid = [&] {
-        CHECK(showAgain(complaint));
-        INFO(complaint);
-        CHECK(complaint.find(file.string()) != std::string::npos);
-        CHECK(complaint.find('\n') == std::string::npos);
+        const auto [complaint, at_start] = showAgain();
+        CHECK(these(at_start, contains(complaint, "\n")) == these(true, false));
+        CHECK_MESSAGE(contains(complaint, file.string()), complaint);
     };
     for (const std::string& text : {std::string("[view\n"), std::string("[view]\nunits-per-metre = 2\n"),
                                     std::string("\xff\xfe\0\0", 4)}) {
@@ -162,14 +142,13 @@ TEST_CASE_FIXTURE(Shown,
         checkSaid();
         // The next save repairs it.
         CHECK(saveViewSettings(options.scene, moved) == "saved as " + file.string());
-        CHECK_FALSE(showAgain(complaint));
-        CHECK(complaint.empty());
+        CHECK(showAgain() == std::pair(std::string(), false));
     }
     // Anything but a regular file stays, even when settings are saved, and nothing waits for a pipe.
     fs::remove(file);
     fs::create_directory(file);
     checkSaid();
-    CHECK(saveViewSettings(options.scene, moved).find("is a directory") != std::string::npos);
+    CHECK(contains(saveViewSettings(options.scene, moved), "is a directory"));
     CHECK(fs::is_directory(file));
     fs::remove(file);
     REQUIRE(mkfifo(file.c_str(), 0600) == 0);
@@ -179,8 +158,7 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE_FIXTURE(
-    Shown, "loading gives up where it is told to, before the file's end, and so does the way to the device") {
+TEST_CASE_FIXTURE(Shown, "loading, and the way to the device, give up where they are told to") {
     struct Enough {};
     go("scene atelier --splats 200000 --out many.ply");
     go("convert many.ply many.spz");
@@ -194,19 +172,15 @@ TEST_CASE_FIXTURE(
         CHECK_THROWS_AS(static_cast<void>(loadScene((path / name).string(), 0, nullptr, stop)), Enough);
         CHECK(furthest < 0.6);
     }
-    const Scene scene = loadScene((path / "many.ply").string());
-    double furthest = 0.0;
-    const auto stop = [&](double share) {
-        furthest = std::max(furthest, share);
+    const Scene scene = loadScene(at("many.ply"));
+    const auto stop = [](double share) {
+        CHECK(share < 0.6);
         throw Enough();
     };
     CHECK_THROWS_AS(GpuScene(context(), scene, stop), Enough);
-    CHECK(furthest < 0.6);
 }
 
-TEST_CASE_FIXTURE(
-    Shown,
-    "a loader that was told to give up ends, and keeps nothing in memory, whether it was in time or not") {
+TEST_CASE_FIXTURE(Shown, "a loader that was told to give up, in time or not, keeps nothing in memory") {
     const std::uint64_t before = context().memoryUse().current_bytes;
     PassKernels kernels(context());
     SceneLoader early(context(), kernels, "builtin:fence", options.run),
@@ -217,64 +191,22 @@ TEST_CASE_FIXTURE(
     CHECK(context().memoryUse().current_bytes > before);
     late.cancel();
     CHECK(context().memoryUse().current_bytes == before);
-    CHECK(early.take() == nullptr);
-    CHECK(late.take() == nullptr);
+    for (SceneLoader* loader : {&early, &late}) { CHECK(loader->take() == nullptr); }
     // Nor does a scene that was fully loaded when another one was requested.
     ShownScene scenes(context(), options, log);
     while (!scenes.isNextReady()) { std::this_thread::yield(); }
     const std::uint64_t one = context().memoryUse().current_bytes;
-    scenes.begin((path / "gone.ply").string());
+    scenes.begin(at("gone.ply"));
     while (!scenes.isNextReady()) { std::this_thread::yield(); }
     CHECK(one > before);
     CHECK(context().memoryUse().current_bytes == before);
 }
 
-TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no sRGB images, as light") {
-    const auto drawn = [&](vk::Format format) {
-        Canvas canvas(context(), kPanelPx, format);
-        ViewSettings settings;
-        SceneChooser chooser;
-        PanelStatus status;
-        status.has_scene = true;
-        canvas.begin({}, 0.01);
-        static_cast<void>(drawPanel(kPanelPx, settings, chooser, status));
-        canvas.end();
-        const test::DeviceImage image(context(), kPanelPx, format);
-        const Buffer bytes = allocate<std::uint32_t>("panel", std::size_t{kPanelPx.x} * kPanelPx.y);
-        run([&](Commands& commands) {
-            canvas.record(commands);
-            canvas.copyTo(commands, *image.image);
-            image.copyLevel(commands, 0, kPanelPx, bytes, 0);
-        });
-        return readBack<std::uint32_t>(bytes, std::size_t{kPanelPx.x} * kPanelPx.y);
-    };
-    using Format = vk::Format;
-    for (const auto& [encoded, linear] : {std::pair(Format::eR8G8B8A8Srgb, Format::eR8G8B8A8Unorm),
-                                          std::pair(Format::eB8G8R8A8Srgb, Format::eB8G8R8A8Unorm)}) {
-        const std::vector<std::uint32_t> seen = drawn(encoded), light = drawn(linear);
-        std::set<std::uint32_t> colours;
-        double farthest = 0.0;
-        for (std::size_t i = 0; i < seen.size(); ++i) {
-            colours.insert(seen[i]);
-            for (const int shift : {0, 8, 16}) {
-                const double value = (seen[i] >> shift & 255) / 255.0;
-                const double expected =
-                    value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-                farthest = std::max(farthest, std::abs((light[i] >> shift & 255) - 255.0 * expected));
-            }
-        }
-        CHECK(colours.size() > 20);
-        CHECK(farthest < 1.0);
-    }
-}
-
-TEST_CASE_FIXTURE(Shown,
-                  "two scenes are compared where their files say they are; another scene ends that, and so "
-                  "does one that cannot be read") {
+TEST_CASE_FIXTURE(Shown, "two scenes are compared where their files say, until another is shown") {
     Scene far = loadScene("builtin:one-splat");
     far.origin = {500'000.0, 0.0, -300'000.0};
-    writePly(far, (path / "far.ply").string());
-    options.compare = (path / "far.ply").string();
+    writePly(far, at("far.ply"));
+    options.compare = at("far.ply");
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
     CHECK(scenes.other() == nullptr);
@@ -290,28 +222,24 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(&scenes.frame() == &scenes.otherFrame());
     CHECK(glm::length(scenes.drawnFrom(place).position + to - (place.position + from)) < 1e-6);
     CHECK(scenes.drawnFrom(place).scale == place.scale);
-    // The next one that is asked for is compared, not shown; that it cannot be read leaves the first one
-    // alone.
-    CHECK(scenes.toggleComparison().find("no longer compared") != std::string::npos);
+    // The next one is compared, not shown; that it cannot be read leaves the first one alone.
+    CHECK(contains(scenes.toggleComparison(), "no longer compared"));
     CHECK(scenes.drawn() == scenes.get());
-    CHECK(scenes.toggleComparison().find("to compare with builtin:step-edge") != std::string::npos);
-    scenes.begin((path / "gone.ply").string());
-    CHECK(scenes.takeOther().find("no such file") != std::string::npos);
+    CHECK(contains(scenes.toggleComparison(), "to compare with builtin:step-edge"));
+    scenes.begin(at("gone.ply"));
+    CHECK(contains(scenes.takeOther(), "no such file"));
     CHECK(scenes.names() == "builtin:step-edge");
     scenes.begin("builtin:fence", "builtin:slanted-wall");
     REQUIRE(scenes.take(state).empty());
     REQUIRE(scenes.takeOther().empty());
     CHECK(scenes.names() == "builtin:fence | builtin:slanted-wall");
     scenes.draw(true);
-    scenes.begin("builtin:step-edge");
-    REQUIRE(scenes.take(state).empty());
+    show(scenes, "builtin:step-edge");
     CHECK(scenes.names() == "builtin:step-edge");
     CHECK(scenes.drawn() == scenes.get());
 }
 
-TEST_CASE_FIXTURE(Shown,
-                  "where two scenes do not fit together, the one that is shown goes first, with a word, and "
-                  "comes back if that was in vain") {
+TEST_CASE_FIXTURE(Shown, "the shown scene makes room for one that does not fit beside it, or comes back") {
     go("scene atelier --splats 20000 --out many.ply");
     go("scene atelier --splats 24000 --out more.ply");
     go("scene atelier --splats 400000 --out most.ply");
@@ -324,11 +252,11 @@ TEST_CASE_FIXTURE(Shown,
     ContextOptions limited;
     limited.memory_limit_bytes = bytesOf("many.ply") + bytesOf("more.ply") - bytesOf("many.ply") / 4;
     const Context small(limited);
-    options.scene = (path / "many.ply").string();
-    const std::string more = (path / "more.ply").string(), most = (path / "most.ply").string();
+    options.scene = at("many.ply");
+    const std::string more = at("more.ply"), most = at("most.ply");
     ShownScene scenes(small, options, log);
     REQUIRE(scenes.take(state).empty());
-    const Similarity moved = Similarity{{1, 0, 0, 0}, {1, 2, 3}, 2.0};
+    const Similarity moved{{1, 0, 0, 0}, {1, 2, 3}, 2.0};
     state.place(moved);
     scenes.begin(more);
     CHECK(scenes.take(state) ==
@@ -341,8 +269,8 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(scenes.name() == more);
     // This one cannot fit at all, so the previous scene comes back.
     scenes.begin(most);
-    CHECK(scenes.take(state).find(" is removed first") != std::string::npos);
-    CHECK(scenes.take(state).find("MiB") != std::string::npos);
+    CHECK(contains(scenes.take(state), " is removed first"));
+    CHECK(contains(scenes.take(state), "MiB"));
     CHECK(scenes.get() == nullptr);
     CHECK(scenes.take(state).empty());
     CHECK(scenes.name() == more);
@@ -355,7 +283,7 @@ TEST_CASE_FIXTURE(Shown,
 
 TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, shared, and toured") {
     go("scene one-splat --out one.ply");
-    options.scene = (path / "one.ply").string();
+    options.scene = at("one.ply");
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
     FileWorker files;
@@ -364,7 +292,7 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     CHECK(list.goBy(1) == nullptr);
     list.show(scenes.get());
     CHECK(list.goBy(1) == nullptr);
-    CHECK(said.find("no viewpoints") != std::string::npos);
+    CHECK(contains(said, "no viewpoints"));
     const auto names = [&] {
         files.finish();
         std::string all;
@@ -376,9 +304,7 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     }
     CHECK(names() == "your own 1;your own 2;your own 3;");
     list.rename("door");
-    list.moveBy(-1);
-    list.moveBy(-1);
-    list.moveBy(-1);
+    for (int i = 0; i < 3; ++i) { list.moveBy(-1); }
     CHECK(names() == "door;your own 1;your own 2;");
     CHECK(list.words() == "viewpoint 1 of 3: door");
     REQUIRE(list.goBy(1) != nullptr);
@@ -388,7 +314,7 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     // Shared, then read by somebody who has none of them; reading twice adds nothing.
     list.writeShared();
     files.finish();
-    CHECK(said == "2 viewpoints are in " + (path / "one.viewpoints.json").string());
+    CHECK(said == "2 viewpoints are in " + at("one.viewpoints.json"));
     scenes.get()->viewpoints.clear();
     list.show(scenes.get());
     // finish() drops reading that has not begun; otherwise it writes what was read.
@@ -400,13 +326,12 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     for (const int added : {2, 0}) {
         list.read("");
         readAll();
-        CHECK(said == fmt::format("2 viewpoints from {}, {} of them new",
-                                  (path / "one.viewpoints.json").string(), added));
+        CHECK(said == fmt::format("2 viewpoints from {}, {} of them new", at("one.viewpoints.json"), added));
     }
     CHECK(list.count() == 2);
-    list.read((path / "gone.json").string());
+    list.read(at("gone.json"));
     readAll();
-    CHECK(said.find("gone.json") != std::string::npos);
+    CHECK(contains(said, "gone.json"));
     // The tour pauses at each viewpoint, and ends after the last.
     std::string toured;
     list.toggleTour();
@@ -419,9 +344,7 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     CHECK(said == "the tour is over");
 }
 
-TEST_CASE_FIXTURE(Shown,
-                  "another method is drawn once its kernels are there, made beside the frames, and the next "
-                  "scene comes with them") {
+TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames") {
     ViewSettings settings;
     options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
     const glm::uvec2 size_px(64, 64);

@@ -6,28 +6,29 @@ SUITE(window_surface) {
 
 constexpr vk::Extent2D kWindow{1337, 720};
 
-vk::SurfaceCapabilitiesKHR able(vk::Extent2D current, vk::Extent2D least, vk::Extent2D most) {
-    vk::SurfaceCapabilitiesKHR capabilities;
-    capabilities.currentExtent = current;
-    capabilities.minImageExtent = least;
-    capabilities.maxImageExtent = most;
-    return capabilities;
+constexpr vk::Extent2D kUnsaid{UINT32_MAX, UINT32_MAX}, kOne{1, 1}, kMost{4096, 4096};
+
+std::optional<vk::Extent2D> extentOf(vk::Extent2D current, vk::Extent2D least, vk::Extent2D most,
+                                     vk::Extent2D window = kWindow) {
+    vk::SurfaceCapabilitiesKHR able;
+    able.currentExtent = current;
+    able.minImageExtent = least;
+    able.maxImageExtent = most;
+    return windowExtent(able, window);
 }
 
 TEST_CASE("pictures are as large as the compositor says, or as the window where it does not") {
-    CHECK(windowExtent(able({1300, 700}, {1, 1}, {4096, 4096}), kWindow) == vk::Extent2D(1300, 700));
-    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {4096, 4096}), kWindow) == kWindow);
-    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {1024, 4096}), kWindow) ==
-          vk::Extent2D(1024, 720));
-    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {2000, 1}, {4096, 4096}), kWindow) ==
-          vk::Extent2D(2000, 720));
+    CHECK(extentOf({1300, 700}, kOne, kMost) == vk::Extent2D(1300, 700));
+    CHECK(extentOf(kUnsaid, kOne, kMost) == kWindow);
+    CHECK(extentOf(kUnsaid, kOne, {1024, 4096}) == vk::Extent2D(1024, 720));
+    CHECK(extentOf(kUnsaid, {2000, 1}, kMost) == vk::Extent2D(2000, 720));
     // On Wayland, before the window is first shown.
-    CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {0, 0}), kWindow) == vk::Extent2D(1, 1));
+    CHECK(extentOf(kUnsaid, kOne, {0, 0}) == kOne);
 }
 
 TEST_CASE("there is nothing to draw on while the window is put away") {
-    CHECK_FALSE(windowExtent(able({0, 0}, {0, 0}, {0, 0}), kWindow).has_value());
-    CHECK_FALSE(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {4096, 4096}), {0, 0}).has_value());
+    CHECK_FALSE(extentOf({0, 0}, {0, 0}, {0, 0}).has_value());
+    CHECK_FALSE(extentOf(kUnsaid, kOne, kMost, {0, 0}).has_value());
 }
 
 TEST_CASE("formats that show bytes as they are are taken, eight bits first") {
