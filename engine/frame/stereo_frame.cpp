@@ -79,18 +79,29 @@ bool StereoFrame::makeRoomFor(glm::uvec2 size_px) {
     }
     FramePlan plan = plan_;
     FrameState state = stateAhead();
+    double pairs = 0.0, splats = 0.0;
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        TargetPlan& target = plan.targets[t];
-        const double times = std::max(1.0 * size_px.x / target.eye.size_px.x, 1.0);
-        target.eye.size_px = size_px;
-        // What a splat touches, one tile and more to each side, as if all were alike.
+        TargetState& target = state.targets[t];
+        // A history of another size is of no use: all of a larger picture is rendered.
+        if (plan.targets[t].history) {
+            target.pairs.needed = std::max(target.pairs.needed, target.warp_counters.picture_cost);
+        }
+        pairs += target.pairs.needed;
+        // The list of what is rendered at once is that of the first.
+        if (plan.at_once > 1 || target.pairs.needed > 0) {
+            splats += state.visible[static_cast<std::size_t>(plan.targets[t].list)].needed;
+        }
+    }
+    // What a splat touches, one tile and more to each side, as if all were alike.
+    const double times = std::max(1.0 * size_px.x / plan.targets[0].eye.size_px.x, 1.0),
+                 across = std::sqrt(std::max(pairs / std::max(splats, 1.0), 1.0)),
+                 across_then = 1.0 + times * (across - 1.0),
+                 more = across_then * across_then / (across * across);
+    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         std::uint32_t& needed = state.targets[t].pairs.needed;
-        const double visible =
-            1.0 * plan.at_once * state.visible[static_cast<std::size_t>(target.list)].needed;
-        const double across = std::sqrt(std::max(needed / std::max(visible, 1.0), 1.0)),
-                     across_then = 1.0 + times * (across - 1.0);
-        const double more = across_then * across_then / (across * across);
-        needed = static_cast<std::uint32_t>(std::min(more * needed, 1.0 * gpu::kMaxItems));
+        const double at_once = plan.at_once > 1 ? pairs : needed;
+        needed = static_cast<std::uint32_t>(std::min(more * at_once, 1.0 * gpu::kMaxItems));
+        plan.targets[t].eye.size_px = size_px;
     }
     if (room_.hasRoom(plan, state, kRoomAhead)) { return true; }
     room_.growBeside(plan, state);
