@@ -113,14 +113,14 @@ std::unique_ptr<IncomingFile> WebCache::begin(const std::string& address) const 
     return nullptr;
 }
 
-void WebCache::keep(const std::string& address, std::unique_ptr<IncomingFile> file,
-                    const FileVersion& version) const {
-    const fs::path stem = stemOf(address);
+fs::path WebCache::keep(const std::string& address, std::unique_ptr<IncomingFile> file,
+                        const FileVersion& version) const {
+    const fs::path stem = stemOf(address), data = with(stem, kData);
     check(std::fclose(file->file_.release()) == 0, "{}: cannot be kept in {}: {}", address, folder_.string(),
           std::strerror(errno));
     const std::optional<FileStamp> stamp = stampOf(file->path_);
     std::error_code error;
-    if (stamp) { fs::rename(file->path_, with(stem, kData), error); }
+    if (stamp) { fs::rename(file->path_, data, error); }
     check(stamp && !error, "{}: cannot be kept in {}: {}", address, folder_.string(), error.message());
     file->is_kept_ = true;
     const std::string text = nlohmann::json{
@@ -135,6 +135,7 @@ void WebCache::keep(const std::string& address, std::unique_ptr<IncomingFile> fi
     PartFile note(with(stem, kNote).string());
     note.write(text.data(), text.size());
     note.commit();
+    return data;
 }
 
 std::optional<KeptCopy> WebCache::find(const std::string& address) const {

@@ -56,9 +56,10 @@ public:
 
     // Null, with the reason in errno, if no file can be made. Any thread.
     [[nodiscard]] std::unique_ptr<IncomingFile> begin(const std::string& address) const;
-    // Replaces the kept copy. Throws Error if it cannot be written to the disk.
-    void keep(const std::string& address, std::unique_ptr<IncomingFile> file,
-              const FileVersion& version) const;
+    // Replaces the kept copy and returns where its bytes lie. Throws Error if it cannot be written to the
+    // disk.
+    std::filesystem::path keep(const std::string& address, std::unique_ptr<IncomingFile> file,
+                               const FileVersion& version) const;
     // Finds a copy; this counts as a use.
     [[nodiscard]] std::optional<KeptCopy> find(const std::string& address) const;
     // Removes copies, the least recently used first, until at most `most_bytes` are left, and leftovers of

@@ -68,16 +68,17 @@ void WebFiles::expect(const std::vector<std::string>& names, std::uint64_t most_
     for (const std::string& name : names) { ask(addressOf(address_, name), most_bytes); }
 }
 
-void WebFiles::settle(const std::string& address) {
+fs::path WebFiles::settle(const std::string& address) {
     const auto found = asked_.find(address);
-    if (found == asked_.end()) { return; }
+    if (found == asked_.end()) { return {}; }
     while (found->second.wait_for(kLook) != std::future_status::ready) {
         if (waiting_) { waiting_(fetcher_.share()); }
     }
     Fetched fetched = found->second.get();
     asked_.erase(found);
+    fs::path path;
     if (fetched.kind == Fetched::Kind::kNew) {
-        cache_.keep(address, std::move(fetched.file), fetched.version);
+        path = cache_.keep(address, std::move(fetched.file), fetched.version);
     }
     const bool is_unreachable = fetched.kind == Fetched::Kind::kUnreachable;
     const std::optional<KeptCopy> copy = is_unreachable ? cache_.find(address) : std::nullopt;
@@ -93,20 +94,25 @@ void WebFiles::settle(const std::string& address) {
         }
     }
     settled_.insert(address);
+    return path;
 }
 
 std::unique_ptr<InputFile> WebFiles::open(const std::string& name, std::uint64_t most_bytes) {
     const std::string address = addressOf(address_, name);
     for (int turn = 0; turn < kMostTurns; ++turn) {
         ask(address, most_bytes);
-        settle(address);
-        const std::optional<KeptCopy> copy = cache_.find(address);
+        // What was just fetched needs no note: if another program has put its own bytes there, these are as
+        // new, while the note beside them may still be about ours.
+        fs::path path = settle(address);
+        if (path.empty()) {
+            if (const std::optional<KeptCopy> copy = cache_.find(address)) { path = copy->path; }
+        }
         try {
-            if (copy) { return std::make_unique<InputFile>(copy->path, address, *this); }
+            if (!path.empty()) { return std::make_unique<InputFile>(path, address, *this); }
         } catch (const Error&) {
             // Another program may have put it back meanwhile.
             std::error_code error;
-            if (turn + 1 == kMostTurns && fs::exists(copy->path, error)) { throw; }
+            if (turn + 1 == kMostTurns && fs::exists(path, error)) { throw; }
         }
         settled_.erase(address);
     }

@@ -50,8 +50,9 @@ public:
 
 private:
     void ask(const std::string& address, std::uint64_t most_bytes);
-    // Waits until there is a copy in the cache, or there will not be. Throws Error if there is none.
-    void settle(const std::string& address);
+    // Waits until there is a copy in the cache, or there will not be; returns its file if it was just
+    // fetched, else nothing. Throws Error if there is none.
+    std::filesystem::path settle(const std::string& address);
 
     Address address_;
     Progress waiting_;
