@@ -220,7 +220,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                       .history = keeps_history},
              .mesh_depths = settings.mesh_depths[static_cast<std::size_t>(e)],
              .picture = e,
-             .from_history_later = keeps_history && settings.mode == Mode::kTemporal,
+             .from_history_later =
+                 keeps_history && (settings.mode == Mode::kTemporal || (!has_history && e == histories.turn)),
              .coarse = coarse});
         if (coarse) { plan.targets.back().gaze = settings.gazes[static_cast<std::size_t>(e)]; }
     }

@@ -301,7 +301,7 @@ TEST_CASE("the governor's steps, to other resolutions and back, wait for nothing
     const std::string script =
         "rate 90\nsize 100 100\nframes none\nvisibility-mask on\nhead 0 position 0 1.6 0\n"
         "head 1 position 0 1.6 0\nhead 6 position 0.4 1.6 0.2 turn 40 0\nat 6 exit\n";
-    for (const std::string mode : {"temporal", "predicted", "shared", "two-pass", "mono"}) {
+    for (const std::string mode : {"temporal", "alternate", "predicted", "shared", "two-pass", "mono"}) {
         for (const std::string axes : {"view", "stay"}) {
             if (axes == "stay" && mode != "temporal") { continue; }
             CAPTURE(mode);
@@ -334,8 +334,8 @@ TEST_CASE("another method is drawn once its frames are made, and no frame waits 
     const Workplace work;
     Acts acts("rate 45\nsize 64 64\nframes none\nvisibility-mask on\n");
     acts.wait(kMethodSeconds);
-    // Without `alternate`, whose second frame still makes a buffer.
-    const std::vector<std::string> methods{"temporal", "predicted", "two-pass", "mono", "shared"};
+    const std::vector<std::string> methods{"temporal", "alternate", "predicted",
+                                           "two-pass", "mono",      "shared"};
     for (const std::string& method : methods) {
         acts.point(onMethod(method)).wait(0.25).press("right trigger", 0.3).wait(kMethodSeconds);
     }
