@@ -56,7 +56,7 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
         if (XR_FAILED(xrCreateSwapchain(session.handle(), &info, &made))) { info.mipCount = levels_ = 1; }
     }
     if (levels_ == 1) { BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &made)); }
-    swapchain_ = {made, {&session.context()}};
+    swapchain_ = {made, {&session.context(), true}};
     std::uint32_t count = 0;
     BINOSPLAT_XR(xrEnumerateSwapchainImages(handle(), 0, &count, nullptr));
     std::vector<XrSwapchainImageVulkan2KHR> images(
@@ -70,7 +70,7 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
 void Swapchain::DestroyIdle::operator()(XrSwapchain swapchain) const {
     const std::lock_guard lock(context->queueMutex());
     try {
-        context->queue().waitIdle();
+        if (waits) { context->queue().waitIdle(); }
     } catch (const vk::SystemError&) {}  // a lost device has no work in flight
     xrDestroySwapchain(swapchain);
 }

@@ -32,6 +32,9 @@ public:
     vk::Image acquire();
     void release();
 
+    // No frame in flight writes the images: freeing them need not wait for any.
+    void noteIdle() { swapchain_.get_deleter().waits = false; }
+
     [[nodiscard]] XrSwapchain handle() const { return swapchain_.get(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] vk::Format format() const { return format_; }
@@ -44,6 +47,7 @@ private:
     // Waits until no frame in flight writes the images.
     struct DestroyIdle {
         const Context* context;
+        bool waits;
         void operator()(XrSwapchain swapchain) const;
     };
 

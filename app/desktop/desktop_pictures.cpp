@@ -35,18 +35,18 @@ DesktopPictures::DesktopPictures(const Context& context)
 }
 
 void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
-    const bool fits = size_px.x <= room_px_.x && size_px.y <= room_px_.y;
+    const bool fits = size_px.x <= memory_px_.x && size_px.y <= memory_px_.y;
     if (fits && images_.at(eyes - 1)) { return; }
     {
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
     }
     using Usage = vk::ImageUsageFlagBits;
-    if (!fits) { room_px_ = size_px; }
+    if (!fits) { memory_px_ = size_px; }
     for (std::size_t e = 0; e < images_.size(); ++e) {
         images_[e].reset();
         if (e < eyes) {
-            images_[e].emplace(context_, "the window's eye", room_px_, kBytes,
+            images_[e].emplace(context_, "the window's eye", memory_px_, kBytes,
                                Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
         }
     }
@@ -55,10 +55,10 @@ void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
 void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
                              const Look& look, bool waits) {
     const glm::uvec2 size_px = eyes.front().size_px;
-    const glm::uvec2 room_px = glm::max(settings.most_px, size_px);
-    reserve(room_px, eyes.size());
+    const glm::uvec2 memory_px = glm::max(settings.most_px, size_px);
+    reserve(memory_px, eyes.size());
     frame.reserve(eyes, settings);
-    presenter_.reserve(room_px, false);
+    presenter_.reserve(memory_px, false);
     const auto present = [&](Commands& commands) {
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             const vk::Image image = *images_[e]->image;

@@ -56,7 +56,7 @@ private:
     const Context& context_;
     Presenter presenter_;
     std::array<std::optional<OwnImage>, 2> images_;
-    glm::uvec2 room_px_{0, 0};  // of each image; a picture may be smaller
+    glm::uvec2 memory_px_{0, 0};  // of each image; a picture may be smaller
     std::vector<Eye> eyes_;
     FrameResult last_;
 };

@@ -9,28 +9,10 @@
 
 namespace binosplat {
 
-namespace {
-
-glm::uvec2 scaledSize(const xr::Instance& instance, glm::uvec2 recommended_px, double scale) {
-    const glm::dvec2 wanted = glm::round(scale * glm::dvec2(recommended_px));
-    return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
-}
-
-// For the pictures of both eyes, if axes stay.
-glm::uvec2 coverPx(const FrameViews& views, glm::uvec2 view_px) {
-    glm::uvec2 size_px(0);
-    for (const xr::EyeView& eye : views.eyes) {
-        size_px = glm::max(
-            size_px, coverOf(eyeInScene({}, {}, eye.fov, view_px), glm::radians(kAxesMarginDegrees)).size_px);
-    }
-    return size_px;
-}
-
-}  // namespace
-
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options,
                              const FrameLog& log, vk::Format format)
     : instance_(instance),
+      context_(context),
       options_(options),
       log_(log),
       format_(format),
@@ -40,101 +22,6 @@ SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& contex
         context_px_ = inset->context_px;
     }
     presenter_.makeKernels();
-}
-
-glm::uvec2 SceneRenderer::sizePx(double scale) const {
-    return scaledSize(instance_, context_px_.value_or(instance_.recommendedSizePx()), scale);
-}
-
-glm::uvec2 SceneRenderer::insetPx(const ConnectedHeadset& headset, double scale) const {
-    return headset.inset ? scaledSize(instance_, headset.inset->inset_px, scale) : glm::uvec2(0);
-}
-
-bool SceneRenderer::mayStay(const ConnectedHeadset& headset, const ViewSettings& settings,
-                            glm::uvec2 cover_px) {
-    if (settings.stereo.axes != Axes::kStay) { return false; }
-    const glm::uvec2 most_px = instance_.maxSizePx();
-    std::string why_not;
-    if (headset.inset) {
-        why_not = "the headset takes insets";
-    } else if (glm::any(glm::greaterThan(cover_px, most_px))) {
-        why_not = fmt::format("pictures of {}x{} are larger than the runtime's {}x{}", cover_px.x, cover_px.y,
-                              most_px.x, most_px.y);
-    }
-    if (std::exchange(why_not_, why_not) != why_not && !why_not.empty()) {
-        log_.say("axes follow the view: " + why_not);
-    }
-    return why_not.empty();
-}
-
-void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings,
-                              const FrameViews& views) {
-    context_px_ = headset.inset ? std::optional(headset.inset->context_px) : std::nullopt;
-    const glm::uvec2 view_px = sizePx(settings), inset_px = insetPx(headset, settings.resolution_scale);
-    const glm::uvec2 cover_px = coverPx(views, view_px);
-    stays_ = mayStay(headset, settings, cover_px);
-    const glm::uvec2 least_px = stays_ ? cover_px : view_px;
-    // Angles may jitter by the rounding of their float32.
-    const glm::uvec2 size_px = stays_ ? glm::min(cover_px + gpu::kTileSize, instance_.maxSizePx()) : view_px;
-    const ImagesAsked before = std::exchange(images_asked_, ImagesAsked{view_px, inset_px, stays_});
-    if (!headset.images) { return makeImages(headset, size_px, inset_px); }
-    const glm::uvec2 before_px = headset.images->sizePx();
-    const glm::uvec2 inset_before_px = headset.inset_images ? headset.inset_images->sizePx() : glm::uvec2(0);
-    if (before == images_asked_ && glm::all(glm::greaterThanEqual(before_px, least_px))) { return; }
-    try {
-        makeImages(headset, size_px, inset_px);
-    } catch (const Error&) {
-        images_asked_ = before;
-        makeImages(headset, before_px, inset_before_px);
-        throw;
-    }
-}
-
-void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px) {
-    const auto make = [&](std::unique_ptr<EyeImages>& images, glm::uvec2 px) {
-        images.reset();  // first, since both may not fit
-        images = std::make_unique<EyeImages>(headset.session, presenter_, format_, px);
-        if (!takes_depth_) { images->dropDepth(); }
-    };
-    headset.inset_images.reset();
-    make(headset.images, size_px);
-    // Before there is a scene, so that its first frame need not.
-    if (presenter_.pixels().bytes() == 0) { presenter_.reserve(size_px, headset.images->takesDepth()); }
-    if (headset.inset) { make(headset.inset_images, inset_px); }
-}
-
-void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views,
-                           ShownScene& shown) {
-    // With coarse tiles both eyes are rendered whatever the budget.
-    const StereoOptions& stereo = settings.stereo;
-    const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery &&
-                        stereo.foveation_deg > 0.0 && !headset.inset;
-    governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode,
-                   {stereo.warp.budget, settings.resolution_scale, stereo.warp.error_bound_db});
-    fitImages(headset, settings, views);
-    takeGoverned(headset, views, shown);
-    const double scale = governed_.resolution_scale;
-    view_px_ = sizePx(scale);
-    headset.images->draw(view_px_);
-    if (headset.inset) { headset.inset_images->draw(insetPx(headset, scale)); }
-}
-
-void SceneRenderer::takeGoverned(const ConnectedHeadset& headset, const FrameViews& views,
-                                 ShownScene& shown) {
-    const GovernedSettings& chosen = governor_.settings();
-    if (chosen == governed_) { return; }
-    // Larger pictures may need longer lists, which are made beside frames of the present size.
-    const glm::uvec2 size_px = sizePx(chosen.resolution_scale),
-                     before_px = sizePx(governed_.resolution_scale);
-    const bool fits =
-        governed_count_ > 0 && glm::all(glm::lessThanEqual(before_px, headset.images->sizePx()));
-    if (fits && glm::any(glm::greaterThan(size_px, before_px)) &&
-        !shown.makeRoomFor(stays_ ? coverPx(views, size_px) : size_px,
-                           insetPx(headset, chosen.resolution_scale))) {
-        return;
-    }
-    governed_ = chosen;
-    ++governed_count_;
 }
 
 ShownRate SceneRenderer::rate() const {
@@ -189,12 +76,12 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
     frame.keep_history = true;
     frame.waits_for_lists = false;
-    frame.most_px = headset.images->sizePx();
+    frame.most_px = sizes_.images_px;
     frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
         frame.hidden_tiles = headset.lens_mask.update(
-            headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes, view_px_);
+            headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes, sizes_.view_px);
         sayHidden(frame.hidden_tiles);
     }
     return frame;
@@ -207,15 +94,16 @@ void SceneRenderer::aim(ConnectedHeadset& headset, const Similarity& scene_from_
     inset_eyes_.clear();
     for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
-        eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, view_px_));
+        eyes_.push_back(
+            eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, sizes_.view_px));
     }
     seen_ = eyes_;
-    if (stays_) {
-        keepAxes(headset, scene_from_room, views);
+    if (sizes_.stay) {
+        keepAxes(scene_from_room, views);
     } else {
         axes_ = StayingAxes(glm::radians(kAxesMarginDegrees));
     }
-    if (headset.inset) { aimInsets(headset, scene_from_room, views); }
+    if (headset.inset) { aimInsets(scene_from_room, views); }
 }
 
 FramesWanted SceneRenderer::framesWanted(const ConnectedHeadset& headset,
@@ -246,15 +134,22 @@ FramesWanted SceneRenderer::framesWanted(ConnectedHeadset& headset, const Simila
                                          const ViewSettings& settings, FrameViews views,
                                          const Similarity& there_from_here) {
     const StayingAxes axes = axes_;  // which follow once a frame
+    const FrameSizes sizes = sizes_;
+    if (const ImagesWanted images = imagesWanted(headset, settings, views); !suit(headset, images)) {
+        const glm::uvec2 size_px = headset.images_ahead.sizePx(), inset_px = images.asked.inset_px;
+        sizes_ = {images.asked.view_px, size_px, inset_px, inset_px, images.asked.stay};
+    }
     aim(headset, scene_from_room, settings, views);
     FramesWanted wanted = std::as_const(*this).framesWanted(headset, there_from_here);
     axes_ = axes;
+    sizes_ = sizes;
     return wanted;
 }
 
 void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
                             const ViewSettings& settings, FrameViews& views) {
     aim(headset, scene_from_room, settings, views);
+    headset.images->draw(eyes_.front().size_px);
     std::vector<Eye> all = eyes_;
     all.insert(all.end(), inset_eyes_.begin(), inset_eyes_.end());
     shown.follow(all, headset.session.stepSeconds());
@@ -275,13 +170,11 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
     }
 }
 
-void SceneRenderer::keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room,
-                             FrameViews& views) {
+void SceneRenderer::keepAxes(const Similarity& scene_from_room, FrameViews& views) {
     const std::span<const Eye> pictures = axes_.follow(seen_, frame_.hidden_tiles);
     eyes_.assign(pictures.begin(), pictures.end());
     frame_.hidden_tiles = axes_.hiddenTiles();
     frame_.gazes = turnGazes(frame_.gazes, seen_, eyes_);
-    headset.images->draw(eyes_.front().size_px);
     for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
         const Eye& picture = eyes_[frame_.mode == Mode::kMono ? 0 : at];
@@ -289,17 +182,15 @@ void SceneRenderer::keepAxes(ConnectedHeadset& headset, const Similarity& scene_
     }
 }
 
-void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room,
-                              const FrameViews& views) {
+void SceneRenderer::aimInsets(const Similarity& scene_from_room, const FrameViews& views) {
     inset_frame_ = frame_;
     inset_frame_.hidden_tiles = {};
     inset_frame_.gazes = {};
-    inset_frame_.most_px = headset.inset_images->sizePx();
-    const glm::uvec2 size_px = headset.inset_images->partPx();
+    inset_frame_.most_px = sizes_.inset_images_px;
     for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
         const Eye& inset = inset_eyes_.emplace_back(
-            eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, size_px));
+            eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, sizes_.inset_px));
         // One low-pass for both, or thin splats would be wider around the inset than within.
         Eye& about = eyes_[inset_eyes_.size() - 1];
         about.own_pixel_px = std::min(about.intrinsics.fx / inset.intrinsics.fx, 1.0);
@@ -385,10 +276,10 @@ void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const Ster
         const bool shown = is_mono || (e == frame_.dominant) != tint;
         if (window == nullptr || !window->drawn() || !shown) { continue; }
         const std::size_t at = is_mono ? 0 : static_cast<std::size_t>(e);
-        const Buffer& pixels = stays_ ? presenter_.turn(commands, images.partPx(), view_px_,
-                                                        pictureFromView(eyes_[at], seen_[at]))
-                                      : presenter_.pixels();
-        window->keepEye(commands, pixels, view_px_, images.sizePx(), format_);
+        const Buffer& pixels = sizes_.stay ? presenter_.turn(commands, images.partPx(), sizes_.view_px,
+                                                             pictureFromView(eyes_[at], seen_[at]))
+                                           : presenter_.pixels();
+        window->keepEye(commands, pixels, sizes_.view_px, images.sizePx(), format_);
     }
 }
 

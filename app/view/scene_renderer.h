@@ -39,12 +39,16 @@ public:
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const {
         return sizePx(settings.resolution_scale);
     }
-    // Makes the headset's images as large as the wearer wants, or larger if axes stay, and lets the governor
-    // adjust the wearer's settings, never above them. What it chooses is drawn once lists of the shown scene
-    // have capacity for that. Throws Error if images of another size cannot be made; then they keep their
-    // size.
+    // In each frame: begins to make images for these settings beside it, if those that are there do not suit
+    // them, and frees those that no frame uses any more.
+    ImagesFor imagesFor(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views,
+                        bool has_window);
+    // Makes the headset's images as large as the wearer wants, or larger if axes stay, unless they have been
+    // made beside the frames, and lets the governor adjust the wearer's settings, never above them. What it
+    // chooses is drawn once lists of the shown scene have capacity for that. Throws Error if images of
+    // another size cannot be made; then they keep their size.
     void govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views,
-                ShownScene& shown);
+                ShownScene& shown, MirrorWindow* window);
     // For a runtime that turned out to refuse depth; returns false if depth was already off.
     bool dropDepth(ConnectedHeadset& headset);
 
@@ -54,7 +58,7 @@ public:
     // Frames like that one, of another scene.
     [[nodiscard]] FramesWanted framesWanted(const ConnectedHeadset& headset,
                                             const Similarity& there_from_here) const;
-    // The same for frames with other settings, before prepare().
+    // The same for frames with other settings, in the images for these, before prepare().
     [[nodiscard]] FramesWanted framesWanted(ConnectedHeadset& headset, const Similarity& scene_from_room,
                                             const ViewSettings& settings, FrameViews views,
                                             const Similarity& there_from_here);
@@ -100,26 +104,32 @@ public:
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:
-    // The sizes that images were made for.
-    struct ImagesAsked {
-        glm::uvec2 view_px{0, 0}, inset_px{0, 0};
-        bool stay = false;
-        bool operator==(const ImagesAsked&) const = default;
+    // Images for the wearer's settings.
+    struct ImagesWanted {
+        ImagesAsked asked;
+        glm::uvec2 least_px{0, 0}, size_px{0, 0};
+        std::string why_not_stay;  // why axes do not, if the wearer wants that
     };
-    void fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
+    // What a frame is drawn into.
+    struct FrameSizes {
+        glm::uvec2 view_px{0, 0};  // of what an eye sees
+        glm::uvec2 images_px{0, 0}, inset_px{0, 0}, inset_images_px{0, 0};
+        bool stay = false;
+    };
+    [[nodiscard]] ImagesWanted imagesWanted(const ConnectedHeadset& headset, const ViewSettings& settings,
+                                            const FrameViews& views) const;
+    [[nodiscard]] bool suit(const ConnectedHeadset& headset, const ImagesWanted& wanted) const;
+    void fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views,
+                   MirrorWindow* window);
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
+    void exchangeImages(ConnectedHeadset& headset, ImageSet images, MirrorWindow* window);
     void takeGoverned(const ConnectedHeadset& headset, const FrameViews& views, ShownScene& shown);
-    // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the
-    // wearer wants that.
-    [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings,
-                               glm::uvec2 cover_px);
     // Prepares pictures whose axes stay, of the eyes that were prepared.
-    void keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views);
+    void keepAxes(const Similarity& scene_from_room, FrameViews& views);
     [[nodiscard]] glm::uvec2 sizePx(double scale) const;
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
     // Sets up the insets' eyes, after the eyes that they are part of.
-    void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room,
-                   const FrameViews& views);
+    void aimInsets(const Similarity& scene_from_room, const FrameViews& views);
     [[nodiscard]] std::span<const int> drawnEyes() const {
         static constexpr std::array<int, 2> kEyes{kLeft, kRight};
         return frame_.mode == Mode::kMono
@@ -139,6 +149,7 @@ private:
     void sayGoverned(bool is_other);  // than before
 
     const xr::Instance& instance_;
+    const Context& context_;
     const RunOptions& options_;
     const FrameLog& log_;
     vk::Format format_;
@@ -147,13 +158,12 @@ private:
     Governor governor_;
     std::optional<SplatBudget> splat_budget_;  // of the streamed scene that is shown
     MetDisplays met_;
-    bool is_late_ = false;      // any frame of the last second
-    FrameSettings frame_;       // prepared
-    std::vector<Eye> eyes_;     // prepared
-    std::vector<Eye> seen_;     // their views: the same unless axes stay
-    glm::uvec2 view_px_{0, 0};  // of what an eye sees in this frame
+    bool is_late_ = false;   // any frame of the last second
+    FrameSettings frame_;    // prepared
+    std::vector<Eye> eyes_;  // prepared
+    std::vector<Eye> seen_;  // their views: the same unless axes stay
+    FrameSizes sizes_;
     ImagesAsked images_asked_;
-    bool stays_ = false;
     std::string why_not_;  // why axes do not stay, as last reported
     StayingAxes axes_{glm::radians(kAxesMarginDegrees)};
     FrameSettings inset_frame_;  // prepared, for insets

@@ -35,9 +35,9 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       notes_(files_, [this](const std::string& message) { say(message); }),
       first_steps_(files_, settings.first_steps),
       viewpoints_(files_, [this](const std::string& message) { say(message); }),
-      scenes_(context_, options_, log_,
-              FramesAhead{
-                  settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
+      scenes_(
+          context_, options_, log_,
+          FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint}) {
     for (const double rate_hz : headset().refresh_rates) {
         if (options_.usual_rate_hz == 0.0 || std::abs(rate_hz - options_.usual_rate_hz) > 0.5) { continue; }
         ViewSettings usual = state_.settings();

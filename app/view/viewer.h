@@ -151,7 +151,7 @@ private:
     Ruler ruler_;
     std::array<bool, 2> clicked_{};  // by hand, in the frame before
     bool other_asked_ = false;       // by the panel: it stays in sight
-    bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
+    bool recentre_asked_ = false, leaving_ = false, waits_for_method_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     SceneNotes notes_;
     FirstSteps first_steps_;

@@ -155,16 +155,23 @@ void Viewer::sayLive(LoadedScene& scene) {
 
 bool Viewer::prepareScene(FrameViews& views) {
     ViewSettings asked = state_.settings();
-    if (headset().inset) { asked.stereo.half_periphery = false; }  // as the renderer does
-    scenes_.expect(asked.stereo, renderer_.sizePx(asked), asked.tint);
+    if (headset().inset) { asked.stereo.half_periphery = false; }         // as the renderer does
+    const bool begins = scenes_.get() == nullptr || options_.load_first;  // then what lacks is made at once
+    const ImagesFor images =
+        renderer_.imagesFor(headset(), begins ? drawn_ : asked, views, window_ != nullptr);
+    scenes_.expect(asked, renderer_.sizePx(asked), images);
     const ViewSettings drawable = scenes_.drawable(asked);
     const bool waits = drawable != asked;
-    if (std::exchange(waits_for_kernels_, waits) && !waits) {
+    ViewSettings resized = drawable;
+    resized.stereo.axes = asked.stereo.axes;
+    resized.resolution_scale = asked.resolution_scale;
+    const bool waits_for_method = resized != asked;
+    if (std::exchange(waits_for_method_, waits_for_method) && !waits_for_method) {
         log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode)));
     }
     drawn_ = waits ? drawable : state_.settings();
-    try {
-        renderer_.govern(headset(), drawn_, views, scenes_);
+    const auto prepare = [&] {
+        renderer_.govern(headset(), drawn_, views, scenes_, window_.get());
         if (scenes_.get() != nullptr) {
             const Similarity drawn = scenes_.drawnFrom(state_.sceneFromRoom());
             if (const std::optional<Similarity> there = scenes_.toRemake()) {
@@ -172,9 +179,19 @@ bool Viewer::prepareScene(FrameViews& views) {
                     renderer_.framesWanted(headset(), drawn, state_.settings(), views, *there));
             }
             renderer_.prepare(headset(), scenes_, drawn, drawn_, views);
-            scenes_.keepDrawn(drawn_);
+            scenes_.keepDrawn(drawn_, headset().images->sizePx());
         }
         state_.keepFitting(drawn_);
+    };
+    try {
+        try {
+            prepare();
+        } catch (const Error&) {
+            // Images that have just made way may hold what it lacks.
+            waitForQueue();
+            if (!headset().images_ahead.freeGone()) { throw; }
+            prepare();
+        }
         return true;
     } catch (const Error& error) {
         if (scenes_.drawsOther()) {
@@ -188,7 +205,7 @@ bool Viewer::prepareScene(FrameViews& views) {
     scenes_.forgetDrawn();
     state_.goBack();
     drawn_ = state_.settings();
-    renderer_.govern(headset(), drawn_, views, scenes_);
+    renderer_.govern(headset(), drawn_, views, scenes_, window_.get());
     return false;
 }
 

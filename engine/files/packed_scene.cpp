@@ -94,18 +94,18 @@ std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& na
     TemporaryFolder folder("binosplat-unpacked-", "a packed scene");
     constexpr const char* kName = "scene";
     const std::uint64_t most_bytes = mostUnpacked(packed);
-    DiskRoom room(folder.path(), how.room);
+    DiskSpace space(folder.path(), how.space);
     std::uint64_t done = 0;
-    const auto requireRoom = [&](std::uint64_t more) {
-        const bool fits = room.holds(done, more);  // which may look again
+    const auto requireSpace = [&](std::uint64_t more) {
+        const bool fits = space.holds(done, more);  // which may look again
         check(fits, "{}: needs at least {} bytes unpacked, but only {} are free in {}; free some space", name,
-              done + more, room.bytes(), folder.path().parent_path().string());
+              done + more, space.bytes(), folder.path().parent_path().string());
     };
     const auto requireWritten = [&](bool written) {
         check(written, "{}: cannot be unpacked into {}: {}", name, folder.path().string(),
               std::strerror(errno));
     };
-    requireRoom(std::min(told_bytes, how.first_bytes));
+    requireSpace(std::min(told_bytes, how.first_bytes));
     File target = createFile(folder.path() / kName);
     requireWritten(target != nullptr);
     std::vector<std::byte> piece(static_cast<std::size_t>(std::min(kUnpackedPieceBytes, how.first_bytes)));
@@ -113,7 +113,7 @@ std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& na
         check(done + got <= most_bytes,
               "{}: is longer than {} bytes unpacked, expected at most {} times as many as packed", name,
               most_bytes, kMostGrowth);
-        requireRoom(got);
+        requireSpace(got);
         requireWritten(std::fwrite(piece.data(), 1, got, target.get()) == got);
         done += got;
     }

@@ -1,7 +1,7 @@
 // Scenes within gzip (garden.ply.gz), or alone in a zip archive.
 #pragma once
 
-#include "engine/disk_room.h"
+#include "engine/disk_space.h"
 #include "engine/files/input_file.h"
 #include "engine/scene/scene.h"
 
@@ -22,7 +22,7 @@ bool isPacked(InputFile& file);
 
 struct Unpacking {
     std::uint64_t first_bytes = ~std::uint64_t{0};  // anything after that is not unpacked
-    DiskRoom::Measure room = roomIn;
+    DiskSpace::Measure space = spaceIn;
 };
 
 // The scene in a packed file, as a file of its own; other files that it names are looked up in its archive.

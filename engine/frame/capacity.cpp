@@ -16,7 +16,7 @@ namespace {
 // Components of holes that get a box of their own: 64 KiB.
 constexpr std::uint32_t kHoleBoxes = 4096;
 // Capacity beyond what was needed.
-constexpr double kRoomMade = 1.5;
+constexpr double kCapacityMade = 1.5;
 
 bool isEmptied(const gpu::ListState& list) { return list.needed != list.count; }
 
@@ -26,7 +26,7 @@ std::uint64_t colourBytes(glm::uvec2 size_px, const Kept& kept) {
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.history || target.from_history_later) {
-        return {.room_px = target.room_px,
+        return {.memory_px = target.memory_px,
                 .classes = false,
                 .half_floats = target.kept.half_floats,
                 .history = true,
@@ -35,7 +35,7 @@ WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (!target.warp) { return {}; }
     const bool components =
         target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
-    return {.room_px = target.room_px,
+    return {.memory_px = target.memory_px,
             .classes = target.keeps_classes || components,
             .half_floats = target.kept.half_floats,
             .history = false,
@@ -44,8 +44,8 @@ WarpBufferNeeds needsOf(const TargetPlan& target) {
 
 }  // namespace
 
-FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity,
-                     std::function<void()> wait_for_frames)
+FrameMemory::FrameMemory(const Context& context, const FrameCapacity& first_capacity,
+                         std::function<void()> wait_for_frames)
     : context_(context),
       first_capacity_(first_capacity),
       wait_for_frames_(std::move(wait_for_frames)),
@@ -54,15 +54,15 @@ FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity
     while (shown_.size() < kMostTargets) { shown_.emplace_back(context); }
 }
 
-void FrameRoom::show(const GpuScene& scene) {
+void FrameMemory::show(const GpuScene& scene) {
     longer_.drop();
     lists_ = makeFrameBuffers(context_, scene.splatCount(), scene.isInPages());
     scene_ = &scene;
-    first_frame_ = room_ahead_fits_ = fits_beside_ = true;
+    first_frame_ = fits_ahead_ = fits_beside_ = true;
 }
 
-void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes,
-                       std::optional<std::uint64_t> used) {
+void FrameMemory::resize(Buffer& buffer, const char* name, std::uint64_t bytes,
+                         std::optional<std::uint64_t> used) {
     if (buffer.madeBytes() != bytes) {
         if (buffer.madeBytes() > 0) { wait_for_frames_(); }
         buffer = {};
@@ -71,23 +71,23 @@ void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes,
     buffer.use(used.value_or(bytes));
 }
 
-void FrameRoom::growLists(const FrameCapacity& capacity) {
+void FrameMemory::growLists(const FrameCapacity& capacity) {
     if (capacity == lists_.capacity()) { return; }
     wait_for_frames_();
     longer_.drop();
     growFrameBuffers(context_, lists_, capacity);
 }
 
-const Buffer& FrameRoom::changedRects() {
+const Buffer& FrameMemory::changedRects() {
     resize(changed_rects_, "changed parts", kMostTargets * kMostChanges * sizeof(gpu::ChangedRect));
     return changed_rects_;
 }
 
-void FrameRoom::recordShown(Commands& commands) {
+void FrameMemory::recordShown(Commands& commands) {
     for (ShownTiles& shown : shown_) { shown.record(commands); }
 }
 
-void FrameRoom::fitWarps(const FramePlan& plan) {
+void FrameMemory::fitWarps(const FramePlan& plan) {
     std::array<WarpBufferNeeds, kMostTargets> needs;
     for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) {
         needs[t] = needsOf(plan.targets[t]);
@@ -108,14 +108,14 @@ void FrameRoom::fitWarps(const FramePlan& plan) {
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
         if (warps_[t].needs() != needs[t]) { warps_[t] = WarpBuffers(context_, needs[t]); }
-        if (needs[t].room_px.x > 0) { warps_[t].use(plan.targets[t].eye.size_px); }
+        if (needs[t].memory_px.x > 0) { warps_[t].use(plan.targets[t].eye.size_px); }
     }
 }
 
-void FrameRoom::joinColours(const FramePlan& plan) {
+void FrameMemory::joinColours(const FramePlan& plan) {
     std::uint64_t bytes = 0, apart = 0;
     if (plan.isSortedInBothPictures()) {
-        bytes = colourBytes(plan.targets[0].room_px, plan.targets[0].kept);
+        bytes = colourBytes(plan.targets[0].memory_px, plan.targets[0].kept);
         if (alignment_ == 0) { alignment_ = Buffer::alignmentOf(context_); }
         apart = (bytes + alignment_ - 1) / alignment_ * alignment_;
         if (apart + bytes > context_.maxAllocationBytes()) { bytes = apart = 0; }
@@ -131,16 +131,16 @@ void FrameRoom::joinColours(const FramePlan& plan) {
     }
 }
 
-EmptyPictures FrameRoom::emptyPictures(const FramePlan& plan, const TargetPlan& target) const {
+EmptyPictures FrameMemory::emptyPictures(const FramePlan& plan, const TargetPlan& target) const {
     if (!plan.isSortedInPicture(target)) { return {}; }
     const Buffer& memory = plan.isSortedInBothPictures() ? both_colours_ : picture(target.picture).colours;
     return {memory.address<gpu::uint>(), memory.madeBytes()};
 }
 
-void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 room_px, const Kept& kept) {
+void FrameMemory::fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 memory_px, const Kept& kept) {
     const auto pixels = [](glm::uvec2 size) { return std::uint64_t{size.x} * size.y; };
     const auto fit = [&](Buffer& buffer, const char* name, bool is_kept, const auto& bytesOf) {
-        resize(buffer, name, is_kept ? bytesOf(room_px) : 0, is_kept ? bytesOf(size_px) : 0);
+        resize(buffer, name, is_kept ? bytesOf(memory_px) : 0, is_kept ? bytesOf(size_px) : 0);
     };
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
@@ -153,22 +153,22 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 room
         [&](glm::uvec2 size) { return pixels(tilesOf(size)) * sizeof(gpu::HistoryTile); });
 }
 
-void FrameRoom::fitPictures(const FramePlan& plan,
-                            const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
+void FrameMemory::fitPictures(const FramePlan& plan,
+                              const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
     std::uint64_t most_tiles = 0, moments_bytes = 0, moments_used = 0;
     std::array<bool, kFramePictures> is_used{};
     for (std::size_t t = 0; t < shown_.size(); ++t) {
         const bool used = t < plan.targets.size();
         const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0),
-                         room_px = used ? plan.targets[t].room_px : glm::uvec2(0), tiles = tilesOf(size_px),
-                         room_tiles = tilesOf(room_px);
-        most_tiles = std::max(most_tiles, std::uint64_t{room_tiles.x} * room_tiles.y);
+                         memory_px = used ? plan.targets[t].memory_px : glm::uvec2(0),
+                         tiles = tilesOf(size_px), memory_tiles = tilesOf(memory_px);
+        most_tiles = std::max(most_tiles, std::uint64_t{memory_tiles.x} * memory_tiles.y);
         const auto hidden = used && t < plan.eyes ? hidden_tiles[t] : std::span<const std::uint8_t>{};
         assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
-        shown_[t].set(hidden, tiles, room_tiles);
+        shown_[t].set(hidden, tiles, memory_tiles);
         if (!used) { continue; }
         if (plan.targets[t].kept.moments) {
-            moments_bytes = std::uint64_t{room_px.x} * room_px.y * sizeof(gpu::vec2);
+            moments_bytes = std::uint64_t{memory_px.x} * memory_px.y * sizeof(gpu::vec2);
             moments_used = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2);
         }
         is_used[static_cast<std::size_t>(plan.targets[t].picture)] = true;
@@ -190,9 +190,9 @@ void FrameRoom::fitPictures(const FramePlan& plan,
         kept.history = kept.history || plan.keeps_history;
         if (plan.spare_picture) {
             fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px,
-                       target.room_px, kept);
+                       target.memory_px, kept);
         }
-        fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, target.room_px,
+        fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, target.memory_px,
                    kept);
     }
     resize(moments_, "inverse depth moments", moments_bytes, moments_used);
@@ -203,38 +203,38 @@ void FrameRoom::fitPictures(const FramePlan& plan,
     fitWarps(plan);
 }
 
-void FrameRoom::fitLists() {
+void FrameMemory::fitLists() {
     const FrameCapacity first{std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)),
                               first_capacity_.pairs};
     if (lists_.capacity() == FrameCapacity{}) { growLists(first); }
 }
 
-bool FrameRoom::isCutShort(const FrameState& state) {
+bool FrameMemory::isCutShort(const FrameState& state) {
     return std::ranges::any_of(state.visible, isEmptied) ||
            std::ranges::any_of(state.targets,
                                [](const TargetState& target) { return isEmptied(target.pairs); });
 }
 
-bool FrameRoom::isSourceVoid(const FramePlan& plan, const FrameState& state) {
+bool FrameMemory::isSourceVoid(const FramePlan& plan, const FrameState& state) {
     const auto source = static_cast<std::size_t>(plan.firstTarget());
     return isEmptied(state.visible[static_cast<std::size_t>(plan.targets[source].list)]) ||
            isEmptied(state.targets[source].pairs);
 }
 
-double FrameRoom::spareFor(double ahead) const {
+double FrameMemory::spareFor(double ahead) const {
     // Just enough the first time, since a single picture needs no more; with some to spare once the view
     // moves.
-    return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
+    return ahead > 1.0 ? kCapacityMade : first_frame_ ? 1.0 : 1.25;
 }
 
-std::uint32_t FrameRoom::roomForSplats(const FramePlan& plan, std::uint32_t splats) const {
+std::uint32_t FrameMemory::capacityForSplats(const FramePlan& plan, std::uint32_t splats) const {
     return std::max(
         VisibleBuffers::capacityFor(splats, plan.at_once, emptyPictures(plan, plan.targets[0]).bytes),
         VisibleBuffers::capacityFor(splats, plan.at_once_ahead, 0));
 }
 
-std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs,
-                                      std::uint32_t visible, bool is_ahead) const {
+std::uint32_t FrameMemory::capacityForPairs(const FramePlan& plan, const TargetPlan& target,
+                                            std::uint32_t pairs, std::uint32_t visible, bool is_ahead) const {
     const std::uint64_t empty_bytes = emptyPictures(plan, target).bytes;
     // In the next frame tiles may be numbered through more pictures, and pairs take more words.
     const auto more = static_cast<gpu::uint>(std::max(plan.at_once_ahead / plan.at_once, 1));
@@ -245,26 +245,26 @@ std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& t
     return PairBuffers::capacityFor(format, pairs, is_ahead && target.warp ? 0 : empty_bytes);
 }
 
-FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead,
-                                 double spare) const {
-    // `roomOf`: the memory for this many; it need not be proportional.
-    const auto enough = [&](std::uint32_t needed, std::uint32_t capacity, const auto& roomOf) {
+FrameCapacity FrameMemory::capacityFor(const FramePlan& plan, const FrameState& state, double ahead,
+                                       double spare) const {
+    // `capacityOf`: the memory for this many; it need not be proportional.
+    const auto enough = [&](std::uint32_t needed, std::uint32_t capacity, const auto& capacityOf) {
         const auto times = [&](double factor, double step) {
             return static_cast<std::uint32_t>(
                 std::min(std::ceil(needed * factor / step) * step, 2147482624.0));
         };
-        return roomOf(std::max(needed, times(ahead, 1.0))) <= capacity
+        return capacityOf(std::max(needed, times(ahead, 1.0))) <= capacity
                    ? capacity
-                   : roomOf(std::max(needed, times(spare, 1024.0)));
+                   : capacityOf(std::max(needed, times(spare, 1024.0)));
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
     // Of the next frame, too, whose pictures meet no more splats than these.
-    const auto roomOfSplats = [&](std::uint32_t of) {
-        return roomForSplats(plan, std::min(of, std::max(scene_->splatCount(), 1u)));
+    const auto capacityOfSplats = [&](std::uint32_t of) {
+        return capacityForSplats(plan, std::min(of, std::max(scene_->splatCount(), 1u)));
     };
     for (const gpu::ListState& visible : state.visible) {
-        wanted.visible = std::max(wanted.visible, enough(visible.needed, now.visible, roomOfSplats));
+        wanted.visible = std::max(wanted.visible, enough(visible.needed, now.visible, capacityOfSplats));
     }
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
@@ -274,20 +274,20 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         // Without the source's pairs every tile seems cheap to render; how many the target needs is found on
         // the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
-        const auto roomOf = [&](std::uint32_t of) {
-            return roomForPairs(plan, plan.targets[t], of, wanted.visible, ahead > 1.0);
+        const auto capacityOf = [&](std::uint32_t of) {
+            return capacityForPairs(plan, plan.targets[t], of, wanted.visible, ahead > 1.0);
         };
-        wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs, roomOf));
+        wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs, capacityOf));
     }
     return wanted;
 }
 
-bool FrameRoom::hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const {
-    return roomFor(plan, state, ahead, spareFor(ahead)) == lists_.capacity();
+bool FrameMemory::hasCapacity(const FramePlan& plan, const FrameState& state, double ahead) const {
+    return capacityFor(plan, state, ahead, spareFor(ahead)) == lists_.capacity();
 }
 
-bool FrameRoom::growIfNeeded(const FramePlan& plan, const FrameState& state) {
-    const FrameCapacity wanted = roomFor(plan, state, 1.0, spareFor(1.0));
+bool FrameMemory::growIfNeeded(const FramePlan& plan, const FrameState& state) {
+    const FrameCapacity wanted = capacityFor(plan, state, 1.0, spareFor(1.0));
     if (wanted == lists_.capacity()) {
         first_frame_ = false;
         return true;
@@ -296,7 +296,7 @@ bool FrameRoom::growIfNeeded(const FramePlan& plan, const FrameState& state) {
     return false;
 }
 
-bool FrameRoom::tryToGrow(const FrameCapacity& wanted) {
+bool FrameMemory::tryToGrow(const FrameCapacity& wanted) {
     const FrameCapacity before = lists_.capacity();
     try {
         growLists(wanted);
@@ -307,42 +307,43 @@ bool FrameRoom::tryToGrow(const FrameCapacity& wanted) {
     }
 }
 
-bool FrameRoom::growIfItFits(const FramePlan& plan, const FrameState& state) {
+bool FrameMemory::growIfItFits(const FramePlan& plan, const FrameState& state) {
     for (const double spare : {spareFor(1.0), 1.0}) {
-        const FrameCapacity wanted = roomFor(plan, state, 1.0, spare);
+        const FrameCapacity wanted = capacityFor(plan, state, 1.0, spare);
         if (wanted == lists_.capacity()) { return false; }
         if (tryToGrow(wanted)) { return true; }
     }
     return false;
 }
 
-void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state) {
+void FrameMemory::growForChosen(const FramePlan& plan, const FrameState& state) {
     // Of the target's work: all of it, or the share that is cheap to render plus the budget.
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())];
     const std::uint32_t all =
         std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
     FrameCapacity wanted = lists_.capacity();
-    wanted.pairs = std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all,
-                                                       wanted.visible, false));
+    wanted.pairs = std::max(
+        wanted.pairs,
+        capacityForPairs(plan, target, target.warp->may_move ? all / 2 : all, wanted.visible, false));
     if (wanted != lists_.capacity()) { tryToGrow(wanted); }
 }
 
-void FrameRoom::makeRoomAhead(const FramePlan& plan, const FrameState& state) {
-    if (!room_ahead_fits_ || hasRoom(plan, state, kRoomAhead)) { return; }
-    room_ahead_fits_ = tryToGrow(roomFor(plan, state, kRoomAhead, spareFor(kRoomAhead)));
+void FrameMemory::growAhead(const FramePlan& plan, const FrameState& state) {
+    if (!fits_ahead_ || hasCapacity(plan, state, kCapacityAhead)) { return; }
+    fits_ahead_ = tryToGrow(capacityFor(plan, state, kCapacityAhead, spareFor(kCapacityAhead)));
 }
 
-void FrameRoom::growBeside(const FramePlan& plan, const FrameState& state) {
+void FrameMemory::growBeside(const FramePlan& plan, const FrameState& state) {
     if (longer_.isUnderWay()) { return; }
     std::vector<FrameCapacity> wanted;
     are_ahead_.clear();
     const auto want = [&](double ahead, double spare) {
-        const FrameCapacity capacity = roomFor(plan, state, ahead, spare);
+        const FrameCapacity capacity = capacityFor(plan, state, ahead, spare);
         if (capacity == lists_.capacity()) { return; }
         wanted.push_back(capacity);
         are_ahead_.push_back(ahead > 1.0);
     };
-    if (room_ahead_fits_) { want(kRoomAhead, spareFor(kRoomAhead)); }
+    if (fits_ahead_) { want(kCapacityAhead, spareFor(kCapacityAhead)); }
     if (isCutShort(state)) {
         want(1.0, spareFor(1.0));
         want(1.0, 1.0);
@@ -350,14 +351,14 @@ void FrameRoom::growBeside(const FramePlan& plan, const FrameState& state) {
     if (!wanted.empty()) { longer_.begin(lists_.capacity(), std::move(wanted)); }
 }
 
-void FrameRoom::learnWhichFitted(std::optional<std::size_t> which) {
+void FrameMemory::learnWhichFitted(std::optional<std::size_t> which) {
     if (!which) { return; }
     fits_beside_ = *which < are_ahead_.size();
-    if (fits_beside_) { room_ahead_fits_ = are_ahead_[*which]; }
+    if (fits_beside_) { fits_ahead_ = are_ahead_[*which]; }
 }
 
-void FrameRoom::bringLonger() { learnWhichFitted(longer_.bring(lists_)); }
+void FrameMemory::bringLonger() { learnWhichFitted(longer_.bring(lists_)); }
 
-void FrameRoom::finishLonger() { learnWhichFitted(longer_.finish(lists_)); }
+void FrameMemory::finishLonger() { learnWhichFitted(longer_.finish(lists_)); }
 
 }  // namespace binosplat

@@ -16,15 +16,15 @@
 
 namespace binosplat {
 
-class FrameRoom {
+class FrameMemory {
 public:
     // Lists of frames that are not waited for have this many times the capacity that the last known frame
     // needed.
-    static constexpr double kRoomAhead = 1.15;
+    static constexpr double kCapacityAhead = 1.15;
 
-    // `wait_for_frames`: returns once no frame in flight uses this room; called before any of it is freed.
-    FrameRoom(const Context& context, const FrameCapacity& first_capacity,
-              std::function<void()> wait_for_frames);
+    // `wait_for_frames`: returns once no frame in flight uses this; called before any of it is freed.
+    FrameMemory(const Context& context, const FrameCapacity& first_capacity,
+                std::function<void()> wait_for_frames);
 
     // Lists hold splats of `scene` from now on.
     void show(const GpuScene& scene);
@@ -48,20 +48,20 @@ public:
     // nothing.
     [[nodiscard]] static bool isSourceVoid(const FramePlan& plan, const FrameState& state);
     // True if the lists have capacity for `ahead` times what was needed.
-    [[nodiscard]] bool hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const;
+    [[nodiscard]] bool hasCapacity(const FramePlan& plan, const FrameState& state, double ahead) const;
     // True if the lists were long enough; if not, makes them longer.
     bool growIfNeeded(const FramePlan& plan, const FrameState& state);
     // True if it made them longer: with some to spare or, if that does not fit, just as long as needed.
     bool growIfItFits(const FramePlan& plan, const FrameState& state);
     // If the source's pairs did not fit: makes a guess, since the target's depend on them.
-    void makeRoomForChosen(const FramePlan& plan, const FrameState& state);
-    // Provides kRoomAhead times what was needed, or less if that does not fit, as long as the lists
+    void growForChosen(const FramePlan& plan, const FrameState& state);
+    // Provides kCapacityAhead times what was needed, or less if that does not fit, as long as the lists
     // themselves do.
-    void makeRoomAhead(const FramePlan& plan, const FrameState& state);
-    [[nodiscard]] bool fitsAhead() const { return room_ahead_fits_; }
+    void growAhead(const FramePlan& plan, const FrameState& state);
+    [[nodiscard]] bool fitsAhead() const { return fits_ahead_; }
 
-    // The same without a wait: begins to make lists that are long enough, with room ahead, beside the frames.
-    // Does nothing if they are, or while some are being made.
+    // The same without a wait: begins to make lists that are long enough for what is ahead, beside the
+    // frames. Does nothing if they are, or while some are being made.
     void growBeside(const FramePlan& plan, const FrameState& state);
     // False: the device lacked the memory for these and the present ones at a time. Then only the calls above
     // help.
@@ -70,7 +70,7 @@ public:
     void bringLonger();
     // While no frame is on the device: waits for those, and brings them.
     void finishLonger();
-    // The frame had room.
+    // The frame had enough.
     void haveFrame() { first_frame_ = false; }
 
     [[nodiscard]] const FrameBuffers& lists() const { return lists_; }
@@ -100,18 +100,19 @@ private:
     void growLists(const FrameCapacity& capacity);
     // Colours of both eyes lie side by side where lists are in both.
     void joinColours(const FramePlan& plan);
-    void fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 room_px, const Kept& kept);
+    void fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 memory_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
     // The capacity of VisibleBuffers for a list of so many, in this frame and the next.
-    [[nodiscard]] std::uint32_t roomForSplats(const FramePlan& plan, std::uint32_t splats) const;
+    [[nodiscard]] std::uint32_t capacityForSplats(const FramePlan& plan, std::uint32_t splats) const;
     // The capacity of PairBuffers for this many pairs of a target, with lists of splats of this capacity.
-    [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target,
-                                             std::uint32_t pairs, std::uint32_t visible, bool is_ahead) const;
+    [[nodiscard]] std::uint32_t capacityForPairs(const FramePlan& plan, const TargetPlan& target,
+                                                 std::uint32_t pairs, std::uint32_t visible,
+                                                 bool is_ahead) const;
     // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
     // Capacity for `spare` times what was needed, in the lists that must grow.
-    [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead,
-                                        double spare) const;
+    [[nodiscard]] FrameCapacity capacityFor(const FramePlan& plan, const FrameState& state, double ahead,
+                                            double spare) const;
     [[nodiscard]] double spareFor(double ahead) const;
     void learnWhichFitted(std::optional<std::size_t> which);
 
@@ -128,7 +129,7 @@ private:
     std::vector<ShownTiles> shown_;
     Buffer changed_rects_;
     bool first_frame_ = true;
-    bool room_ahead_fits_ = true;  // in the device's memory
+    bool fits_ahead_ = true;  // in the device's memory
     bool fits_beside_ = true;
     std::vector<bool> are_ahead_;  // of the lists that are being made, one after the other until one fits
     LongerLists longer_;           // last: its thread ends first

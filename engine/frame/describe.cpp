@@ -30,12 +30,12 @@ void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) con
         state.views[t] = viewOf(plan.targets[t].eye, plan.near);
         describe(plan, static_cast<int>(t), state.targets[t]);
     }
-    commands.update(room.lists().state, &state, sizeof(state));
+    commands.update(memory.lists().state, &state, sizeof(state));
 }
 
 void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& state) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
-    const Picture& picture = room.picture(target.picture);
+    const Picture& picture = memory.picture(target.picture);
     if (target.history) {
         state.history = historyViewOf(target.eye, target.history->eye, plan.near, glm::vec3(plan.background));
         state.history_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
@@ -48,12 +48,12 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
                                 target.warp->settings);
         state.warp_counters = firstCountersOf(target.warp->settings, target.eye.size_px);
     }
-    room.warp(index).tell(state);
+    memory.warp(index).tell(state);
     if (target.choice == TileChoice::kAll) {
-        state.tile_mask = room.shown(index).mask();
+        state.tile_mask = memory.shown(index).mask();
         state.tile_list = {};
         state.full_tiles =
-            room.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
+            memory.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
     }
     state.colours = picture.colours.address<gpu::vec4>();
     if (target.kept.depth) { state.depths = picture.depths.address<float>(); }
@@ -62,7 +62,7 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
         state.depth_scale = target.mesh_depths->depth_scale;
         state.depth_offset = target.mesh_depths->depth_offset;
     }
-    if (target.kept.moments) { state.moments = room.moments().address<gpu::vec2>(); }
+    if (target.kept.moments) { state.moments = memory.moments().address<gpu::vec2>(); }
     if (target.kept.history) {
         state.history_tiles = picture.tiles.address<gpu::HistoryTile>();
         state.moving = picture.words.address<gpu::uint>();
@@ -74,7 +74,7 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
         const MovingWords words = wordsOf(plan, *warped);
         state.moving = words.moving;
         const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;
-        if (!movesRows(relation.rectified, room.warp(*warped))) { state.arrivals = words.arrivals; }
+        if (!movesRows(relation.rectified, memory.warp(*warped))) { state.arrivals = words.arrivals; }
         state.row_words = words.row_words;
     }
     if (plan.at_once > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
@@ -88,8 +88,8 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
 
 MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(warped)];
-    const WarpBuffers& warp = room.warp(warped);
-    const Picture& picture = room.picture(target.picture);
+    const WarpBuffers& warp = memory.warp(warped);
+    const Picture& picture = memory.picture(target.picture);
     return {warp.moving(picture), warp.arrivals(picture), warp.rowWords()};
 }
 

@@ -40,7 +40,7 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
                      .center_rois = settings.stereo.center_rois,
                      .half_periphery = hasCoarseTiles(settings, eyes.size())};
     for (std::size_t e = 0; e < eyes.size(); ++e) {
-        shape.rooms_px[e] = glm::max(settings.most_px, eyes[e].size_px);
+        shape.memory_px[e] = glm::max(settings.most_px, eyes[e].size_px);
     }
     return shape;
 }

@@ -14,7 +14,7 @@ struct FrameShape {
     int dominant = 0;
     bool per_eye = false, half_floats = false, keep_depth = false, keep_both_depths = false,
          keep_moments = false, keep_classes = false, center_rois = false, half_periphery = false;
-    std::array<glm::uvec2, 2> rooms_px{};  // the sizes that pictures have memory for
+    std::array<glm::uvec2, 2> memory_px{};  // the sizes that pictures have memory for
     bool operator==(const FrameShape&) const = default;
 };
 FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);

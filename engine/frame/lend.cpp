@@ -17,11 +17,11 @@ StereoFrame::Lent StereoFrame::lend(std::span<const Eye> eyes, const FrameSettin
         }
         std::unique_ptr<Flight>& flight = lent_[number] = std::move(idle_.back());
         idle_.pop_back();
-        if (FrameRoom::isCutShort(state_)) {
-            room_.growIfItFits(plan_, state_);
-        } else if (!plan_.targets.empty() && room_.fitsAhead() &&
-                   !room_.hasRoom(plan_, stateAhead(), kRoomAhead)) {
-            room_.makeRoomAhead(plan_, stateAhead());
+        if (FrameMemory::isCutShort(state_)) {
+            memory_.growIfItFits(plan_, state_);
+        } else if (!plan_.targets.empty() && memory_.fitsAhead() &&
+                   !memory_.hasCapacity(plan_, stateAhead(), kCapacityAhead)) {
+            memory_.growAhead(plan_, stateAhead());
         }
         prepare(eyes, settings);
         record(*flight, settings, append);

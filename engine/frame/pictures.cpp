@@ -80,13 +80,13 @@ std::optional<double> StereoFrame::depthAt(int eye, glm::uvec2 pixel) {
 }
 
 Image StereoFrame::readInverseDepthMoments() {
-    return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())};
+    return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(memory_.moments())};
 }
 
 const WarpBuffers* StereoFrame::chosenTiles(int eye) const {
     if (static_cast<std::size_t>(eye) >= plan_.targets.size()) { return nullptr; }
     const TargetPlan& target = plan_.targets[static_cast<std::size_t>(eye)];
-    return target.warp || target.history ? &room_.warp(eye) : nullptr;
+    return target.warp || target.history ? &memory_.warp(eye) : nullptr;
 }
 
 std::vector<std::uint32_t> StereoFrame::readTileKinds(int eye) {

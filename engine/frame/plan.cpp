@@ -26,9 +26,9 @@ void keepForWarp(Kept& source, const Warp& warp) {
 // tiles they may not.
 bool canRenderAtOnce(const FramePlan& plan, const FrameSettings& settings, std::uint32_t splats) {
     const TargetPlan &left = plan.targets[0], &right = plan.targets[1];
-    const glm::uvec2 tiles = tilesOf(left.room_px);
+    const glm::uvec2 tiles = tilesOf(left.memory_px);
     return plan.shares_order && !plan.keeps_history && !left.coarse &&
-           left.eye.size_px == right.eye.size_px && left.room_px == right.room_px &&
+           left.eye.size_px == right.eye.size_px && left.memory_px == right.memory_px &&
            left.kept.cut == right.kept.cut && (left.tiles_hidden > 0) == (right.tiles_hidden > 0) &&
            !settings.keep_moments && PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
 }
@@ -95,7 +95,8 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, const Historie
         target.picture = picture;
         // Free once this target is made; a larger one needs memory of its own, since this is still being
         // read.
-        const bool fits = target.history->room_px == plan.targets[static_cast<std::size_t>(order[1])].room_px;
+        const bool fits =
+            target.history->memory_px == plan.targets[static_cast<std::size_t>(order[1])].memory_px;
         picture = fits ? target.history->picture : fourthPicture(histories);
     }
     for (const int e : order) { plan.steps.push_back({Step::Kind::kHistory, e}); }
@@ -157,7 +158,7 @@ Histories historiesAfter(const FramePlan& plan, const Histories& before) {
     Histories after = before;
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const TargetPlan& target = plan.targets[e];
-        if (target.kept.history) { after.of_eyes[e] = History{target.eye, target.picture, target.room_px}; }
+        if (target.kept.history) { after.of_eyes[e] = History{target.eye, target.picture, target.memory_px}; }
     }
     // A picture that was a history is free, once this frame has read it.
     const auto isFree = [&](int picture) {
@@ -207,7 +208,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         const bool is_first = e == first;
         plan.targets.push_back(
             {.eye = eyes[e],
-             .room_px = glm::max(settings.most_px, eyes[e].size_px),
+             .memory_px = glm::max(settings.most_px, eyes[e].size_px),
              .role = one_eye    ? Role::kNone
                      : is_first ? Role::kDominant
                                 : Role::kAffiliated,

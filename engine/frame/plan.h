@@ -12,8 +12,8 @@
 
 namespace binosplat {
 
-// Pictures of a room: two eyes with a history take turns with theirs, one that is being made, and one more in
-// case sizes change.
+// Pictures that frames have: two eyes with a history take turns with theirs, one that is being made, and one
+// more in case sizes change.
 inline constexpr std::size_t kFramePictures = 4;
 
 // A list of visible splats, front to back.
@@ -38,10 +38,10 @@ struct Warp {
 // The last picture of an eye, from which later ones are made.
 struct History {
     Eye eye;
-    int picture = 0;           // of the room's
-    glm::uvec2 room_px{0, 0};  // that this has memory for
+    int picture = 0;             // of the frames'
+    glm::uvec2 memory_px{0, 0};  // that this has memory for
 };
-// By eye; the room's picture to be made next, which no frame in flight reads; and the eye to be rendered in
+// By eye; the picture to be made next, which no frame in flight reads; and the eye to be rendered in
 // full next (kAlternate).
 struct Histories {
     std::array<std::optional<History>, 2> of_eyes = {};
@@ -52,7 +52,7 @@ struct Histories {
 // A picture that the frame makes.
 struct TargetPlan {
     Eye eye;
-    glm::uvec2 room_px{0, 0};  // its pictures have memory for this size
+    glm::uvec2 memory_px{0, 0};  // its pictures have memory for this size
     Role role = Role::kNone;
     int list = 0;  // of visible splats
     std::uint32_t tiles_hidden = 0;
@@ -62,7 +62,7 @@ struct TargetPlan {
     std::optional<Warp> warp = {};
     std::optional<History> history = {};  // what it is made from instead: its eye's last picture
     std::optional<Gaze> gaze = {};  // for the choice among what the history has left, and of coarse tiles
-    int picture = 0;                // which of the room's pictures it becomes
+    int picture = 0;                // which of the frames' pictures it becomes
     bool keeps_classes = false;
     bool from_history_later = false;  // frames after this one make it from a history: what they need is kept
     bool coarse = false;              // tiles that the eye does not see sharply may be
@@ -94,7 +94,7 @@ struct FramePlan {
     std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
     int dominant = 0;                                   // of the targets
     bool keeps_history = false;                         // later frames are made from this one
-    std::optional<int> spare_picture = {};              // the room's picture for the frame after this one
+    std::optional<int> spare_picture = {};              // the picture for the frame after this one
     // How many pictures are rendered at the same time, from lists with capacity for each; and in that frame.
     int at_once = 1, at_once_ahead = 1;
 

@@ -27,7 +27,7 @@ void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) con
     begin(commands, false);
     describeFrame(commands, plan);
     for (const ListPlan& list : plan.lists) {
-        if (list.culls) { recordCull(kernels, commands, scene, room.lists(), list.eyes, Role::kNone); }
+        if (list.culls) { recordCull(kernels, commands, scene, memory.lists(), list.eyes, Role::kNone); }
     }
 }
 
@@ -35,15 +35,15 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
                            const std::function<void(Commands&)>& before) const {
     begin(commands, times_passes);
     if (before) { before(commands); }
-    room.recordShown(commands);  // which says where the masks are
+    memory.recordShown(commands);  // which says where the masks are
     describeFrame(commands, plan);
     for (const Step& step : plan.steps) {
         switch (step.kind) {
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
                 const EyesOfList eyes = eyesOf(plan, list);
-                if (list.culls) { recordCull(kernels, commands, scene, room.lists(), eyes, list.role); }
-                recordOrder(kernels, commands, scene, room.lists(), eyes, list.role);
+                if (list.culls) { recordCull(kernels, commands, scene, memory.lists(), eyes, list.role); }
+                recordOrder(kernels, commands, scene, memory.lists(), eyes, list.role);
                 break;
             }
             case Step::Kind::kWarp:
@@ -69,18 +69,18 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
     binosplat::recordWarp(
         kernels, commands,
         {.scene = scene,
-         .buffers = room.lists(),
-         .warp = room.warp(index),
+         .buffers = memory.lists(),
+         .warp = memory.warp(index),
          .settings = warp.settings,
          .rectified = warp.relation.rectified,
          .may_move = warp.may_move,
          .list = target.list,
          .index = index,
          .role = target.role,
-         .source = room.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
-         .target = room.picture(target.picture),
-         .source_shown = room.shown(warp.source),
-         .target_shown = room.shown(index),
+         .source = memory.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
+         .target = memory.picture(target.picture),
+         .source_shown = memory.shown(warp.source),
+         .target_shown = memory.shown(index),
          .words = wordsOf(plan, index),
          .background = glm::vec3(plan.background),
          .target_gaze = warp.gaze.has_value()});
@@ -88,14 +88,14 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
 
 HistoryInputs FrameRecorder::historyOf(const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
-    return {.buffers = room.lists(),
-            .warp = room.warp(index),
+    return {.buffers = memory.lists(),
+            .warp = memory.warp(index),
             .index = index,
             .role = target.role,
-            .source = room.picture(target.history->picture),
-            .target = room.picture(target.picture),
-            .shown = room.shown(index).mask(),
-            .source_shown = room.shown(index).maskBefore(),
+            .source = memory.picture(target.history->picture),
+            .target = memory.picture(target.picture),
+            .shown = memory.shown(index).mask(),
+            .source_shown = memory.shown(index).maskBefore(),
             .gaze = target.gaze.has_value()};
 }
 
@@ -105,7 +105,7 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
         if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kHistory) {
             eyes.push_back(historyOf(plan, t));
-            most_pairs = std::min(most_pairs, pairsOf(room.lists(), targetsOf(plan, t)).capacity);
+            most_pairs = std::min(most_pairs, pairsOf(memory.lists(), targetsOf(plan, t)).capacity);
         }
     }
     recordChanged(commands, plan, eyes);
@@ -127,7 +127,7 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan,
     }
     if (rects.empty()) { return; }
     begins.push_back(rects.size());
-    const Buffer& buffer = room.changedRects();
+    const Buffer& buffer = memory.changedRects();
     commands.update(buffer, rects.data(), rects.size() * sizeof(gpu::ChangedRect));
     for (std::size_t p = 0; p < pictures.size(); ++p) {
         binosplat::recordChanged(kernels, commands, pictures[p],
@@ -138,10 +138,10 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan,
 
 EyesOfList FrameRecorder::eyesOf(const FramePlan& plan, const ListPlan& list) const {
     EyesOfList eyes = list.eyes;
-    eyes.empty = room.emptyPictures(plan, plan.targets[static_cast<std::size_t>(eyes.first)]);
+    eyes.empty = memory.emptyPictures(plan, plan.targets[static_cast<std::size_t>(eyes.first)]);
     if (list.of_chosen) {
-        eyes.first_mask = room.warp(eyes.first).tileMask();
-        eyes.last_mask = room.warp(eyes.first + eyes.count - 1).tileMask();
+        eyes.first_mask = memory.warp(eyes.first).tileMask();
+        eyes.last_mask = memory.warp(eyes.first + eyes.count - 1).tileMask();
     }
     return eyes;
 }
@@ -152,11 +152,11 @@ Targets FrameRecorder::targetsOf(const FramePlan& plan, int index) const {
     Targets targets{.first = first,
                     .count = count,
                     .list = planned.list,
-                    .empty = room.emptyPictures(plan, planned),
+                    .empty = memory.emptyPictures(plan, planned),
                     .background = glm::vec3(plan.background),
                     .kept = planned.kept,
                     .coarse = planned.coarse,
-                    .masked = planned.choice != TileChoice::kAll || room.shown(first).hideAny(),
+                    .masked = planned.choice != TileChoice::kAll || memory.shown(first).hideAny(),
                     .chosen = planned.choice != TileChoice::kAll};
     for (int t = first; t < first + count; ++t) {
         const glm::uvec2 tiles = tilesOf(plan.targets[static_cast<std::size_t>(t)].eye.size_px);
@@ -172,7 +172,7 @@ Targets FrameRecorder::targetsOf(const FramePlan& plan, int index) const {
 
 void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, int index) const {
     binosplat::recordPictures(
-        kernels, commands, scene, room.lists(), targetsOf(plan, index),
+        kernels, commands, scene, memory.lists(), targetsOf(plan, index),
         plan.at_once > 1 ? Role::kBoth : plan.targets[static_cast<std::size_t>(index)].role);
 }
 

@@ -11,7 +11,7 @@ namespace binosplat {
 struct FrameRecorder {
     PassKernels& kernels;
     const GpuScene& scene;
-    FrameRoom& room;
+    FrameMemory& memory;
     // If the recording is going to be submitted, and so brings the scene's changes: those that the histories
     // know, see GpuScene.
     std::optional<std::uint64_t> changes_known;
@@ -24,7 +24,7 @@ struct FrameRecorder {
     void recordCulling(Commands& commands, const FramePlan& plan) const;
     // The end of that: what the device reports is copied to `readback`.
     void recordReport(Commands& commands, const Buffer& readback) const {
-        commands.copy(room.lists().state, readback, sizeof(FrameState));
+        commands.copy(memory.lists().state, readback, sizeof(FrameState));
     }
 
 private:

@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-// Which the room's buffers need not have any more.
+// Which the frames' buffers need not have any more.
 std::uint32_t tilesShownOf(const TargetPlan& target) {
     const glm::uvec2 tiles = tilesOf(target.eye.size_px);
     return tiles.x * tiles.y - target.tiles_hidden;
@@ -22,7 +22,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
     const StereoSettings& settings = target.warp->settings;
     const TargetState& state = frame.state.targets[index];
     const gpu::WarpCounters& warp = state.warp_counters;
-    const WarpBuffers& buffers = frame.room.warp(static_cast<int>(index));
+    const WarpBuffers& buffers = frame.memory.warp(static_cast<int>(index));
     const bool has_classes = buffers.classesBuffer().bytes() > 0;
     WarpedCounters& counters = result.counters.warped.emplace();
     if (has_classes) { counters.pixels = {warp.covered_pixels, warp.gap_pixels, warp.hole_pixels}; }
@@ -71,7 +71,7 @@ void countHistory(const FrameFacts& frame, FrameResult& result) {
     for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
         if (!frame.plan.targets[t].history) { continue; }
         const TargetState& state = frame.state.targets[t];
-        const WarpBuffers& buffers = frame.room.warp(static_cast<int>(t));
+        const WarpBuffers& buffers = frame.memory.warp(static_cast<int>(t));
         counters.tiles_patched += state.chosen_tiles.count;
         counters.tiles_predicted += state.warp_counters.predicted_tiles;
         if (counters.tiles_over_bound) { *counters.tiles_over_bound += state.warp_counters.waiting_tiles; }
@@ -178,7 +178,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
 }  // namespace
 
 FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
-    const FrameBuffers& lists = frame.room.lists();
+    const FrameBuffers& lists = frame.memory.lists();
     FrameResult result;
     result.mark = mark;
     result.gpu_ms = frame.commands.times();
@@ -199,7 +199,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         const TargetPlan& target = frame.plan.targets[t];
         const TargetState& state = frame.state.targets[t];
         const glm::uvec2 size_px = target.eye.size_px, tiles = tilesOf(size_px);
-        const Picture& picture = frame.room.picture(target.picture);
+        const Picture& picture = frame.memory.picture(target.picture);
         TargetCounters& its = counters.targets.emplace_back();
         its.splats_visible = frame.state.visible[static_cast<std::size_t>(target.list)].count;
         const gpu::ListState& pairs = frame.state.targets[frame.plan.at_once > 1 ? 0 : t].pairs;

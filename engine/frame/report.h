@@ -8,7 +8,7 @@ namespace binosplat {
 struct FrameFacts {
     const Context& context;
     const GpuScene& scene;
-    const FrameRoom& room;
+    const FrameMemory& memory;
     const FramePlan& plan;
     const FrameState& state;
     const Commands& commands;

@@ -33,12 +33,12 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
       own_kernels_(others == nullptr ? std::make_unique<PassKernels>(context, options.threads_per_cell)
                                      : nullptr),
       kernels_(others == nullptr ? *own_kernels_ : *others),
-      room_(context, options.first_capacity,
-            [this] {
-                for (const Flight& flight : flights_) {
-                    static_cast<void>(flight.commands.isDone(UINT64_MAX));
-                }
-            }),
+      memory_(context, options.first_capacity,
+              [this] {
+                  for (const Flight& flight : flights_) {
+                      static_cast<void>(flight.commands.isDone(UINT64_MAX));
+                  }
+              }),
       flights_{Flight(context), Flight(context)} {
     show(scene);
 }
@@ -51,7 +51,7 @@ std::unique_ptr<StereoFrame> StereoFrame::beside(StereoFrame& other) {
 
 void StereoFrame::show(const GpuScene& scene) {
     finish();
-    room_.show(scene);
+    memory_.show(scene);
     scene_ = &scene;
     moving_pays_.forget();
     histories_ = {};
@@ -61,7 +61,7 @@ void StereoFrame::show(const GpuScene& scene) {
 
 void StereoFrame::goOnWith(const GpuScene& scene) {
     scene_ = &scene;
-    room_.goOnWith(scene);
+    memory_.goOnWith(scene);
     histories_ = {};
     changes_known_ = scene.changesRecorded();
     cut_short_ = done_again_ = 0;
@@ -71,10 +71,10 @@ void StereoFrame::reserveForChanges(std::uint64_t bytes) {
     for (Flight& flight : flights_) { flight.commands.reserveStaging(bytes); }
 }
 
-bool StereoFrame::makeRoomFor(glm::uvec2 size_px) {
+bool StereoFrame::growFor(glm::uvec2 size_px) {
     // Nothing is known, or the device lacks the memory.
-    if (plan_.targets.empty() || room_.isFirstFrame() || FrameRoom::isCutShort(state_) ||
-        !room_.growsBeside() || !room_.fitsAhead()) {
+    if (plan_.targets.empty() || memory_.isFirstFrame() || FrameMemory::isCutShort(state_) ||
+        !memory_.growsBeside() || !memory_.fitsAhead()) {
         return true;
     }
     FramePlan plan = plan_;
@@ -103,8 +103,8 @@ bool StereoFrame::makeRoomFor(glm::uvec2 size_px) {
         needed = static_cast<std::uint32_t>(std::min(more * at_once, 1.0 * gpu::kMaxItems));
         plan.targets[t].eye.size_px = size_px;
     }
-    if (room_.hasRoom(plan, state, kRoomAhead)) { return true; }
-    room_.growBeside(plan, state);
+    if (memory_.hasCapacity(plan, state, kCapacityAhead)) { return true; }
+    memory_.growBeside(plan, state);
     return false;
 }
 
@@ -128,13 +128,13 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     if (hasHistory(settings.mode) && settings.keep_history) {
         const FramePlan next =
             planFrame(settings, eyes, true, scene_->splatCount(), historiesAfter(plan_, {}));
-        room_.fitPictures(next, settings.hidden_tiles);
+        memory_.fitPictures(next, settings.hidden_tiles);
         recorder(true).record(commands, next);
         commands.drop();
     }
     // Nothing is known about earlier frames any more.
     moving_pays_.forget();
-    room_.forgetFrames();
+    memory_.forgetFrames();
 }
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings,
@@ -144,7 +144,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     renderUntilComplete(settings, append);
     FrameResult result = take(flight());
     // With a bound, frames decide what lists have capacity for.
-    if (plan_.error_bound_db > 0.0) { room_.makeRoomAhead(plan_, state_); }
+    if (plan_.error_bound_db > 0.0) { memory_.growAhead(plan_, state_); }
     return result;
 }
 
@@ -156,7 +156,7 @@ void StereoFrame::reserve(std::span<const Eye> eyes, const FrameSettings& settin
     shape_ = {};  // some pictures are new, and some may fail
     plan_ = std::move(plan);
     const Histories histories = std::exchange(histories_, {});
-    room_.fitPictures(plan_, settings.hidden_tiles);
+    memory_.fitPictures(plan_, settings.hidden_tiles);
     histories_ = histories;
 }
 
@@ -164,7 +164,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                     const Append& append, vk::Semaphore signals) {
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
-    room_.bringLonger();
+    memory_.bringLonger();
     // Lists have capacity for patches while there is a history, and for whole pictures after it.
     const bool has_history = histories_.of_eyes[0] && settings.keep_history;
     const bool was_warped = std::ranges::any_of(
@@ -173,17 +173,17 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                (was_warped && changedShare(eyes, settings) > kMostChanged));
     const Likeness likeness = likenessToLast(eyes, settings);
     const bool jumps = loses_history || likeness == Likeness::kJumps;
-    const bool grows_beside = !settings.waits_for_lists && room_.growsBeside();
-    bool waits = room_.isFirstFrame() || likeness == Likeness::kOther ||
-                 (jumps && settings.waits_for_lists) || (FrameRoom::isCutShort(state_) && !grows_beside);
+    const bool grows_beside = !settings.waits_for_lists && memory_.growsBeside();
+    bool waits = memory_.isFirstFrame() || likeness == Likeness::kOther ||
+                 (jumps && settings.waits_for_lists) || (FrameMemory::isCutShort(state_) && !grows_beside);
     // Lists fill up gradually: they are made longer before they are full, while nothing uses them.
-    const bool is_short =
-        result && !grows_beside && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
-    if (result && grows_beside) { room_.growBeside(plan_, stateAhead()); }
+    const bool is_short = result && !grows_beside && memory_.fitsAhead() &&
+                          !memory_.hasCapacity(plan_, stateAhead(), kCapacityAhead);
+    if (result && grows_beside) { memory_.growBeside(plan_, stateAhead()); }
     if (waits || is_short) {
         if (auto newer = land(last)) { result = std::move(newer); }
-        waits = waits || (FrameRoom::isCutShort(state_) && !grows_beside);
-        if (is_short) { room_.makeRoomAhead(plan_, stateAhead()); }
+        waits = waits || (FrameMemory::isCutShort(state_) && !grows_beside);
+        if (is_short) { memory_.growAhead(plan_, stateAhead()); }
     }
     prepare(eyes, settings);
     if (!waits) {
@@ -192,15 +192,15 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
         turn_ = 1 - turn_;
         return result;
     }
-    makeRoomForVisible();
+    growForVisible();
     done_again_ += renderAtMostTwice(settings, append);
-    if (FrameRoom::isCutShort(state_)) {
+    if (FrameMemory::isCutShort(state_)) {
         ++cut_short_;
         histories_ = {};
     }
     result = take(flight());
     result->counters.ahead = {cut_short_, done_again_};
-    room_.makeRoomAhead(plan_, state_);
+    memory_.growAhead(plan_, state_);
     if (signals) {
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().submit(vk::SubmitInfo({}, {}, {}, signals));
@@ -215,7 +215,7 @@ void StereoFrame::passOver() {
 
 std::optional<FrameResult> StereoFrame::finish() {
     std::optional<FrameResult> older = land(flights_[turn_]), newer = land(flights_[1 - turn_]);
-    room_.finishLonger();
+    memory_.finishLonger();
     return newer ? std::move(newer) : std::move(older);
 }
 
@@ -224,7 +224,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     flight.commands.wait();
     state_ = flight.readback.mapped<FrameState>()[0];
     splats_known_ = flight.splats_held;
-    if (FrameRoom::isCutShort(state_)) {
+    if (FrameMemory::isCutShort(state_)) {
         ++cut_short_;
         // A tile that did not fit keeps what was made from a history or another picture; a picture made from
         // neither has nothing else.
@@ -243,14 +243,14 @@ FrameResult StereoFrame::take(const Flight& flight) {
         const gpu::WarpCounters& counters = state_.targets[static_cast<std::size_t>(*warped)].warp_counters;
         moving_pays_.learn(flight.asked, counters.pays != 0);
     }
-    return reportFrame({context_, *scene_, room_, flight.plan, state_, flight.commands},
+    return reportFrame({context_, *scene_, memory_, flight.plan, state_, flight.commands},
                        flight.settings.mark);
 }
 
 void StereoFrame::renderUntilComplete(const FrameSettings& settings, const Append& append) {
     for (;;) {
         renderOnce(settings, append);
-        if (room_.growIfNeeded(plan_, state_)) { return; }
+        if (memory_.growIfNeeded(plan_, state_)) { return; }
         planAnew(settings);
     }
 }
@@ -260,16 +260,16 @@ std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, cons
     const std::optional<int> warped = plan_.warpedTarget();
     const bool guesses = warped &&
                          plan_.targets[static_cast<std::size_t>(*warped)].choice != TileChoice::kNone &&
-                         FrameRoom::isSourceVoid(plan_, state_);
-    if (!room_.growIfItFits(plan_, state_)) {
-        room_.haveFrame();
+                         FrameMemory::isSourceVoid(plan_, state_);
+    if (!memory_.growIfItFits(plan_, state_)) {
+        memory_.haveFrame();
         return 0;
     }
-    if (guesses) { room_.makeRoomForChosen(plan_, state_); }
+    if (guesses) { memory_.growForChosen(plan_, state_); }
     planAnew(settings);
     renderOnce(settings, append);
     // Lists that are still too short grow the next time.
-    if (!room_.growIfItFits(plan_, state_)) { room_.haveFrame(); }
+    if (!memory_.growIfItFits(plan_, state_)) { memory_.haveFrame(); }
     return 1;
 }
 
@@ -302,12 +302,12 @@ FrameState StereoFrame::stateAhead() const {
     return ahead;
 }
 
-void StereoFrame::makeRoomForVisible() {
+void StereoFrame::growForVisible() {
     recorder().recordCulling(flight().commands, plan_);
     recorder().recordReport(flight().commands, flight().readback);
     flight().commands.submitAndWait();
     state_ = flight().readback.mapped<FrameState>()[0];
-    room_.growIfItFits(plan_, state_);  // nothing is known about pairs yet
+    memory_.growIfItFits(plan_, state_);  // nothing is known about pairs yet
 }
 
 Histories StereoFrame::historiesFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
@@ -341,7 +341,7 @@ void StereoFrame::planAnew(const FrameSettings& settings) {
     }
     // The memory that the history was made from is overwritten already.
     plan_ = planFrame(settings, eyes_, true, scene_->splatCount());
-    room_.fitPictures(plan_, settings.hidden_tiles);
+    memory_.fitPictures(plan_, settings.hidden_tiles);
 }
 
 StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes,
@@ -375,8 +375,8 @@ void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settin
         plan_.budget = std::min(
             std::max(plan_.budget, kMoreWhereChanged * changed + kBudgetBesideChanges * plan_.budget), 1.0);
     }
-    room_.fitPictures(plan_, settings.hidden_tiles);
-    room_.fitLists();
+    memory_.fitPictures(plan_, settings.hidden_tiles);
+    memory_.fitLists();
     moving_pays_.ask(asked, may_move);
     shape_ = shapeOf(eyes, settings);
     eyes_.assign(eyes.begin(), eyes.end());

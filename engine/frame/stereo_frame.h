@@ -18,7 +18,7 @@ namespace binosplat {
 
 class StereoFrame {
 public:
-    static constexpr double kRoomAhead = FrameRoom::kRoomAhead;
+    static constexpr double kCapacityAhead = FrameMemory::kCapacityAhead;
 
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
     // With `kernels`, which outlive it, and which frames on other threads may use, too.
@@ -70,7 +70,7 @@ public:
     // Before the first frame of another size for which there is memory (FrameSettings::most_px): true if
     // lists probably have capacity for it; otherwise longer ones are being made beside the frames, and later
     // calls say when they are there. Does not wait.
-    [[nodiscard]] bool makeRoomFor(glm::uvec2 size_px);
+    [[nodiscard]] bool growFor(glm::uvec2 size_px);
     // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the
     // previous one, as renderAhead does.
     void passOver();
@@ -130,13 +130,13 @@ public:
 
     // The same in device memory, for display.
     [[nodiscard]] const Picture& picture(int eye) const {
-        return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture);
+        return memory_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture);
     }
     // The buffers with the kinds of an eye's tiles in the last frame; null if it was rendered in full.
     [[nodiscard]] const WarpBuffers* chosenTiles(int eye) const;
     // For the target that is made from another; without memory if there is none.
     [[nodiscard]] const WarpBuffers& warpBuffers() const {
-        return room_.warp(plan_.warpedTarget().value_or(0));
+        return memory_.warp(plan_.warpedTarget().value_or(0));
     }
 
 private:
@@ -164,7 +164,7 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: the recording will be dropped, and must leave the scene's changes to the next one.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_),
+        return {kernels_, *scene_, memory_, drops ? std::nullopt : std::optional(changes_known_),
                 brings_changes_};
     }
     // The histories that earlier frames have left for such a frame.
@@ -192,7 +192,7 @@ private:
     [[nodiscard]] FrameState stateAhead() const;
     // Counts the splats that the eyes see, which costs little; if their list is too short, nothing is known
     // about what follows.
-    void makeRoomForVisible();
+    void growForVisible();
     // How much a frame has in common with the previous one.
     enum class Likeness {
         kAlike,
@@ -208,7 +208,7 @@ private:
     const GpuScene* scene_ = nullptr;
     std::unique_ptr<PassKernels> own_kernels_;  // null if they are another frame's
     PassKernels& kernels_;
-    FrameRoom room_;
+    FrameMemory memory_;
     FramePlan plan_;                  // of the last frame
     Histories histories_;             // that the last frame leaves
     FrameShape history_shape_;        // of these histories, apart from sizes

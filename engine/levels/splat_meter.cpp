@@ -10,11 +10,11 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kRoomMade = 1.25;
+constexpr double kCapacityMade = 1.25;
 constexpr std::uint32_t kFirstPairs = 1u << 18;
 
-std::uint32_t roomFor(std::uint32_t needed) {
-    return static_cast<std::uint32_t>(std::min<double>(kRoomMade * needed, gpu::kMaxItems));
+std::uint32_t capacityAbove(std::uint32_t needed) {
+    return static_cast<std::uint32_t>(std::min<double>(kCapacityMade * needed, gpu::kMaxItems));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
     commands_.begin();
     commands_.fillZero(picture.colours);
     commands_.submitAndWait();
-    do { record(eye, near, picture); } while (!hadRoom());
+    do { record(eye, near, picture); } while (!hadCapacity());
 }
 
 void SplatMeter::addSums(const Picture& picture, const Picture* wanted) {
@@ -96,14 +96,14 @@ void SplatMeter::record(const Eye& eye, double near, const Picture& picture) {
     commands_.submitAndWait();
 }
 
-bool SplatMeter::hadRoom() {
+bool SplatMeter::hadCapacity() {
     const FrameState& state = readback_.mapped<FrameState>()[0];
-    const gpu::uint needed = state.targets[0].pairs.needed;  // every splat has room
+    const gpu::uint needed = state.targets[0].pairs.needed;  // all splats fit
     check(needed <= gpu::kMaxItems, "the scene's splats touch too many tiles of a picture to be judged");
     if (needed <= pairsOf(buffers_, targets_).capacity) { return true; }
     growFrameBuffers(context_, buffers_,
                      {buffers_.visible.capacity(),
-                      PairBuffers::capacityFor(pairFormatOf(buffers_, targets_), roomFor(needed), 0)});
+                      PairBuffers::capacityFor(pairFormatOf(buffers_, targets_), capacityAbove(needed), 0)});
     return false;
 }
 

@@ -33,7 +33,7 @@ public:
 private:
     void record(const Eye& eye, double near, const Picture& picture);
     // False: the lists were too short, and have been made longer.
-    bool hadRoom();
+    bool hadCapacity();
     template <typename T>
     std::vector<T> read(const Buffer& buffer);
 

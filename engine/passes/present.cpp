@@ -28,13 +28,22 @@ void Presenter::makeKernels() {
     kernels_.get(TurnKernel{});
 }
 
-void Presenter::reserve(glm::uvec2 size_px, bool with_depth) {
-    const std::uint64_t pixel_count = std::uint64_t{size_px.x} * size_px.y;
-    const auto grow = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
+Presenter::Buffers Presenter::makeBuffers(glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const {
+    Buffers buffers;
+    grow(buffers, size_px, with_depth, view_px);
+    return buffers;
+}
+
+void Presenter::reserve(glm::uvec2 size_px, bool with_depth) { grow(buffers_, size_px, with_depth, {0, 0}); }
+
+void Presenter::grow(Buffers& buffers, glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const {
+    const auto fit = [&](Buffer& buffer, const char* name, glm::uvec2 px) {
+        const std::uint64_t bytes = sizeof(gpu::uint) * px.x * px.y;
         if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }
     };
-    grow(pixels_, "presented pixels", pixel_count * sizeof(gpu::uint));
-    if (with_depth) { grow(depths_, "presented depths", pixel_count * sizeof(float)); }
+    fit(buffers.pixels, "presented pixels", size_px);
+    if (with_depth) { fit(buffers.depths, "presented depths", size_px); }
+    fit(buffers.turned, "turned pixels", view_px);
 }
 
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
@@ -50,8 +59,8 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
         pass.tile_kinds = eye.tinted_by->tileKinds();
         pass.pixel_classes = eye.tinted_by->pixelClasses();
     }
-    pass.pixels = pixels_.address<gpu::uint>();
-    if (with_depth) { pass.device_depths = depths_.address<float>(); }
+    pass.pixels = buffers_.pixels.address<gpu::uint>();
+    if (with_depth) { pass.device_depths = buffers_.depths.address<float>(); }
     pass.size_px = eye.size_px;
     pass.depth_scale = static_cast<float>(near);
     pass.blue_first = blue_first_ ? 1 : 0;
@@ -61,19 +70,18 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
     commands.dispatch(kernels_.get(PresentKernel{.half_colours = eye.picture->half_floats}), pass,
                       (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
-    commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
+    commands.copyToImage(buffers_.pixels, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) {
-        commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth);
+        commands.copyToImage(buffers_.depths, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth);
     }
 }
 
 const Buffer& Presenter::turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px,
                               const glm::dmat3& picture_from_view) {
-    const std::uint64_t bytes = sizeof(gpu::uint) * view_px.x * view_px.y;
-    if (turned_.bytes() < bytes) { turned_ = Buffer(context_, "turned pixels", bytes); }
+    grow(buffers_, picture_px, false, view_px);
     const glm::mat3 matrix(picture_from_view);
-    const gpu::TurnPass pass{.pixels = pixels_.address<gpu::uint>(),
-                             .shown = turned_.address<gpu::uint>(),
+    const gpu::TurnPass pass{.pixels = buffers_.pixels.address<gpu::uint>(),
+                             .shown = buffers_.turned.address<gpu::uint>(),
                              .column_x = matrix[0],
                              .column_y = matrix[1],
                              .column_z = matrix[2],
@@ -82,7 +90,7 @@ const Buffer& Presenter::turn(Commands& commands, glm::uvec2 picture_px, glm::uv
                              .linear = linear_ ? 1u : 0u};
     commands.beginPass({Role::kNone, TurnKernel::kStage, TurnKernel::kShader});
     commands.dispatch(kernels_.get(TurnKernel{}), pass, (view_px.x + 15) / 16, (view_px.y + 7) / 8);
-    return turned_;
+    return buffers_.turned;
 }
 
 }  // namespace binosplat

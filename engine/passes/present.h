@@ -4,6 +4,8 @@
 #include "engine/gpu/kernel.h"
 #include "engine/passes/warp_buffers.h"
 
+#include <utility>
+
 namespace binosplat {
 
 // An eye's picture and what is shown along with it.
@@ -33,6 +35,15 @@ public:
 
     // Makes the kernel for half floats before it is needed.
     void makeKernels();
+    // What it needs for pictures up to a size.
+    struct Buffers {
+        Buffer pixels, depths;  // of one eye after another
+        Buffer turned;          // see turn()
+    };
+    // On any thread. `view_px`: of turn(); zero without it. Throws Error if there is not enough memory.
+    [[nodiscard]] Buffers makeBuffers(glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const;
+    // From now on `buffers` is used. Frames in flight may still use the one before, which is returned.
+    [[nodiscard]] Buffers exchange(Buffers buffers) { return std::exchange(buffers_, std::move(buffers)); }
     // For pictures of that size, while nothing recorded is in flight. Throws Error if there is not enough
     // memory.
     void reserve(glm::uvec2 size_px, bool with_depth);
@@ -42,7 +53,8 @@ public:
     // keeps the old ones.
     void rebuildKernels() { kernels_.rebuild(); }
     // The bytes of the eye that was recorded last, rows top to bottom, for showing them elsewhere.
-    [[nodiscard]] const Buffer& pixels() const { return pixels_; }
+    [[nodiscard]] const Buffer& pixels() const { return buffers_.pixels; }
+    [[nodiscard]] bool turns() const { return buffers_.turned.bytes() > 0; }
     // The same bytes as seen by a view from the same place with other axes. The matrix maps places in the
     // view, in pixels, to those in the picture. Allocates memory first; only the first one in a submission
     // may need to.
@@ -50,11 +62,12 @@ public:
                        const glm::dmat3& picture_from_view);
 
 private:
+    void grow(Buffers& buffers, glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const;
+
     const Context& context_;
     KernelCache kernels_;
     bool blue_first_, linear_;
-    Buffer pixels_, depths_;  // one eye after another
-    Buffer turned_;
+    Buffers buffers_;
 };
 
 }  // namespace binosplat

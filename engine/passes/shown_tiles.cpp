@@ -12,8 +12,8 @@ std::size_t wordsOf(glm::uvec2 size_tiles) { return std::size_t{(size_tiles.x + 
 
 }  // namespace
 
-void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles, glm::uvec2 room_tiles) {
-    room_tiles_ = room_tiles;
+void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles, glm::uvec2 memory_tiles) {
+    memory_tiles_ = memory_tiles;
     if (std::ranges::equal(hidden, hidden_) && size_tiles == size_tiles_) { return; }
     hidden_.assign(hidden.begin(), hidden.end());
     size_tiles_ = size_tiles;
@@ -32,11 +32,11 @@ void ShownTiles::record(Commands& commands) {
     turn_ = 1 - turn_;
     Buffer& mask = masks_[turn_];
     const std::uint64_t bytes = words_.size() * sizeof(gpu::uint),
-                        room = wordsOf(room_tiles_) * sizeof(gpu::uint);
+                        bytes_made = wordsOf(memory_tiles_) * sizeof(gpu::uint);
     // Frames before the last one have finished.
     retired_ = {};
-    if (bytes > 0 && mask.madeBytes() != room) {
-        retired_ = std::exchange(mask, Buffer(context_, "shown tiles", room));
+    if (bytes > 0 && mask.madeBytes() != bytes_made) {
+        retired_ = std::exchange(mask, Buffer(context_, "shown tiles", bytes_made));
     }
     mask.use(bytes);
     if (bytes > 0) { commands.update(mask, words_.data(), bytes); }

@@ -17,8 +17,8 @@ public:
     explicit ShownTiles(const Context& context) : context_(context) {}
 
     // For the next frame: a byte per tile, row-major, 1 if it is hidden; empty: all are shown. Masks have
-    // memory for pictures of `room_tiles`.
-    void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles, glm::uvec2 room_tiles);
+    // memory for pictures of `memory_tiles`.
+    void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles, glm::uvec2 memory_tiles);
     // Before the passes of a frame: uploads the mask, and keeps that of the frame before.
     void record(Commands& commands);
 
@@ -37,7 +37,7 @@ private:
 
     const Context& context_;
     std::vector<std::uint8_t> hidden_;
-    glm::uvec2 size_tiles_{0, 0}, room_tiles_{0, 0};
+    glm::uvec2 size_tiles_{0, 0}, memory_tiles_{0, 0};
     std::vector<gpu::uint> words_;  // of the mask
     std::array<Buffer, 2> masks_;   // of the last two frames; unused if all tiles are shown
     Buffer retired_;                // may be in use by a frame in flight

@@ -16,25 +16,25 @@ std::uint64_t WarpBuffers::maskWords(glm::uvec2 size_px) {
 
 WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     : needs_(needs),
-      size_px_(needs.room_px),
+      size_px_(needs.memory_px),
       longest_shared_row_(mostRowSteps(context) * gpu::kArrivalsStep) {
-    if (needs.room_px.x == 0) { return; }
-    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.room_px) +
+    if (needs.memory_px.x == 0) { return; }
+    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.memory_px) +
                                 std::max(gpu::kPriceBins, gpu::kDepthBins);
     tiles_ = Buffer(context, "warp tiles", words * sizeof(gpu::uint));
     if (needs.classes) {
         classes_ = Buffer(context, "pixel classes",
-                          std::uint64_t{sizeTiles().x} * needs.room_px.y * sizeof(gpu::uint));
+                          std::uint64_t{sizeTiles().x} * needs.memory_px.y * sizeof(gpu::uint));
     }
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
     if (needs.history) {
         const glm::uvec2 block{gpu::kHistoryColumns, gpu::kHistoryRows},
-            blocks = (needs.room_px + block - 1u) / block;
+            blocks = (needs.memory_px + block - 1u) / block;
         history_blocks_ = Buffer(context, "blocks of the history",
                                  std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::HistoryBlock));
     } else if (!sharesRows()) {
         planes_ = Buffer(context, "reprojected pixels",
-                         2 * sizeof(gpu::uint) * std::uint64_t{needs.room_px.x} * needs.room_px.y);
+                         2 * sizeof(gpu::uint) * std::uint64_t{needs.memory_px.x} * needs.memory_px.y);
     }
 }
 

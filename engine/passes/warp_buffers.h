@@ -10,11 +10,11 @@ std::uint32_t mostRowSteps(const Context& context);
 
 // A frame's requirements.
 struct WarpBufferNeeds {
-    glm::uvec2 room_px{0, 0};  // memory for pictures of both eyes of this size; 0: no mode that reprojects
-    bool classes = false;      // of the target's pixels
-    bool half_floats = false;  // what pictures consist of
-    bool history = false;      // the eye's own history is the source
-    std::uint32_t boxes = 0;   // components of holes that get their own boxes; 0 if centre ROIs are off
+    glm::uvec2 memory_px{0, 0};  // memory for pictures of both eyes of this size; 0: no mode that reprojects
+    bool classes = false;        // of the target's pixels
+    bool half_floats = false;    // what pictures consist of
+    bool history = false;        // the eye's own history is the source
+    std::uint32_t boxes = 0;     // components of holes that get their own boxes; 0 if centre ROIs are off
     bool operator==(const WarpBufferNeeds&) const = default;
 };
 
@@ -27,7 +27,7 @@ public:
     WarpBuffers(const Context& context, const WarpBufferNeeds& needs);
 
     [[nodiscard]] const WarpBufferNeeds& needs() const { return needs_; }
-    // From now on pictures have this size, at most room_px, which is their size at first.
+    // From now on pictures have this size, at most memory_px, which is their size at first.
     void use(glm::uvec2 size_px) { size_px_ = size_px; }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] glm::uvec2 sizeTiles() const { return tilesOf(size_px_); }

@@ -17,7 +17,7 @@ constexpr double kHairFrames = 1e-4;
 // If the time advances by more than this, or goes back, it was set.
 constexpr double kMostStepSeconds = 0.5;
 // For frames with more splats than the sizes of files suggest.
-constexpr double kSpareRoom = 1.25;
+constexpr double kSpareCapacity = 1.25;
 constexpr std::uint32_t kSparePages = 8;
 
 }  // namespace
@@ -45,7 +45,7 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
     const auto pages = static_cast<double>(shown_.size());
     ResidentScene::Options options;
     options.capacity_pages =
-        static_cast<std::uint32_t>(std::min(pages * series_.growth() * kSpareRoom,
+        static_cast<std::uint32_t>(std::min(pages * series_.growth() * kSpareCapacity,
                                             double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
         kSparePages;
     // A scene frame is shown as a whole, or not yet.
@@ -114,7 +114,7 @@ void MovingScene::dropSteps() {
     is_asked_ = is_stale_ = false;
 }
 
-std::string MovingScene::noRoomFor(const Step& step) const {
+std::string MovingScene::noCapacityFor(const Step& step) const {
     const std::uint64_t room = std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats;
     if (step.frame.splats <= room) { return {}; }
     return fmt::format("{}: has {} splats, there is room for {}, going by the sizes of the files",
@@ -123,7 +123,7 @@ std::string MovingScene::noRoomFor(const Step& step) const {
 
 void MovingScene::take(Step&& step) {
     moment_ = step.moment;
-    if (const std::string trouble = noRoomFor(step); !trouble.empty()) {
+    if (const std::string trouble = noCapacityFor(step); !trouble.empty()) {
         lines_.push_back(trouble + "; it is left out");
         return;
     }
@@ -192,7 +192,7 @@ void MovingScene::settle(std::span<const Eye> /*eyes*/, const Progress& progress
     Question question{moment, loader_->get(series_.sceneOf(moment.frame)), nullptr};
     if (isBetween(moment)) { question.second = loader_->get(sceneAfter(moment.frame)); }
     Step step = stepTo(question);
-    const std::string trouble = noRoomFor(step);
+    const std::string trouble = noCapacityFor(step);
     check(trouble.empty(), "{}", trouble);
     take(std::move(step));
 }

@@ -83,8 +83,8 @@ private:
     void ask(Moment moment);
     // Waits for a step that is being made, and drops it.
     void dropSteps();
-    // Why there is no room for a step; empty if there is.
-    [[nodiscard]] std::string noRoomFor(const Step& step) const;
+    // Why there is no capacity for a step; empty if there is.
+    [[nodiscard]] std::string noCapacityFor(const Step& step) const;
     void take(Step&& step);
 
     const Context& context_;

@@ -63,7 +63,7 @@ private:
     // The chosen levels that are not loaded, to be requested.
     [[nodiscard]] std::vector<LeafLevel> missing(const std::vector<LeafLevel>& chosen) const;
     void wish(Waits waits, bool coarsest_only = false);
-    // Adds the parts for which there was no room before, and those loaded since.
+    // Adds the parts for which there was no capacity before, and those loaded since.
     void takeLoaded(bool at_once);
     void ask(std::span<const Eye> eyes);
     void settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress);
@@ -76,7 +76,7 @@ private:
     std::unique_ptr<ChunkLoader> loader_;
     std::unique_ptr<ShownLeaves> leaves_;
     LevelChoices chosen_;
-    std::deque<LoadedPart> held_;         // parts for which there was no room yet
+    std::deque<LoadedPart> held_;         // parts for which there was no capacity yet
     bool has_wishes_ = false;             // that the loader has not been told
     std::optional<LevelQuestion> asked_;  // the last one
     bool answered_ = false;

@@ -2,7 +2,7 @@
 // place.
 #pragma once
 
-#include "app/view/headset/eye_images.h"
+#include "app/view/headset/images_ahead.h"
 #include "app/view/headset/lens_mask.h"
 #include "app/view/room/room_things.h"
 #include "xr/extensions/foveated_inset.h"
@@ -29,6 +29,7 @@ struct ConnectedHeadset {
     RoomThings things;
     std::unique_ptr<EyeImages> images;        // once their size is known
     std::unique_ptr<EyeImages> inset_images;  // with them, in a session with insets
+    ImagesAhead images_ahead;
     LensMask lens_mask;
 };
 

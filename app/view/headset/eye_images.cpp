@@ -43,6 +43,13 @@ void EyeImages::dropDepth() {
     shows_depth_ = {};
 }
 
+void EyeImages::noteIdle() {
+    for (std::size_t e = 0; e < 2; ++e) {
+        colour_[e].noteIdle();
+        depth_[e].noteIdle();
+    }
+}
+
 void EyeImages::acquire(int eye, bool with_depth) {
     const auto e = static_cast<std::size_t>(eye);
     colour_now_[e] = colour_[e].acquire();

@@ -24,6 +24,9 @@ public:
     void dropDepth();
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
 
+    // No frame in flight presents into them: freeing them need not wait.
+    void noteIdle();
+
     // Before anything is recorded: acquires an eye's image for this frame, and its depth image if
     // `with_depth` is set and the runtime accepts depth.
     void acquire(int eye, bool with_depth);

@@ -1,5 +1,5 @@
 // From a scene that is loaded to one that is shown, from one that was shown to memory that is free, and from
-// one method to another, without a wait.
+// one method or resolution to another, without a wait.
 #include "app/view/scenes/shown_scene.h"
 #include "engine/gpu/device_error.h"
 
@@ -45,27 +45,32 @@ SceneFrames ShownScene::takeFrames(Coming& coming) {
     }
 }
 
-void ShownScene::keepDrawn(const ViewSettings& drawn) {
+void ShownScene::keepDrawn(const ViewSettings& drawn, glm::uvec2 images_px) {
     if (!ahead_ || !drawing().ready) { return; }
     std::optional<FramesAhead>& met = drawing().met;
-    if (met && met->stereo == drawn.stereo && met->tint == drawn.tint) { return; }
+    if (met && met->stereo == drawn.stereo && met->tint == drawn.tint && met->images_px == images_px &&
+        met->resolution_scale == drawn.resolution_scale) {
+        return;
+    }
     met = *drawing().ready;
     met->stereo = drawn.stereo;
     met->tint = drawn.tint;
+    met->images_px = images_px;
+    met->resolution_scale = drawn.resolution_scale;
 }
 
 std::optional<Similarity> ShownScene::toRemake() const {
     if (!ahead_ || options_.load_first) { return std::nullopt; }
     Similarity there;
-    if (lacksMethod(drawing())) { return there; }
+    if (lacksNewFrames(drawing())) { return there; }
     const Held& rests = draws_other_ ? shown_ : other_;
-    if (!lacksMethod(rests)) { return std::nullopt; }
+    if (!lacksNewFrames(rests)) { return std::nullopt; }
     there.position = (draws_other_ ? -1.0 : 1.0) * otherFromShown();
     return there;
 }
 
 void ShownScene::remakeFrames(FramesWanted wanted) {
-    Held& held = lacksMethod(drawing()) ? drawing() : resting();
+    Held& held = lacksNewFrames(drawing()) ? drawing() : resting();
     held.remade_for = ahead_;
     for (const StereoFrame* const frame : {held.frames.frame.get(), held.frames.insets.get()}) {
         const std::uint64_t bytes = frame != nullptr ? frame->bytesForChanges() : 0;
@@ -88,7 +93,7 @@ void ShownScene::takeRemade(Held& held) {
         RemadeFrames remade = held.remade.get();
         const GpuScene& scene = held.scene->gpu_scene;
         const bool fits = remade.scene->splatCount() == scene.splatCount();
-        if (!fits || !held.remade_for->hasMethodOf(*ahead_)) {  // another method was chosen meanwhile
+        if (!fits || !held.remade_for->hasFramesOf(*ahead_)) {  // others were asked for meanwhile
             freeing_.push_back(std::async(std::launch::async, [gone = std::move(remade)]() mutable {
                 const RemadeFrames here = std::move(gone);
             }));
@@ -106,16 +111,16 @@ void ShownScene::takeRemade(Held& held) {
     held.met = held.remade_for;
 }
 
-bool ShownScene::makeRoomFor(glm::uvec2 size_px, glm::uvec2 inset_px) {
-    bool has_room = true;
+bool ShownScene::growFor(glm::uvec2 size_px, glm::uvec2 inset_px) {
+    bool has_capacity = true;
     for (const Held* const held : {&shown_, &other_}) {
         for (const auto& [frame, its_px] :
              {std::pair(held->frames.frame.get(), size_px), std::pair(held->frames.insets.get(), inset_px)}) {
             // Each begins what it lacks.
-            if (frame != nullptr && !frame->makeRoomFor(its_px)) { has_room = false; }
+            if (frame != nullptr && !frame->growFor(its_px)) { has_capacity = false; }
         }
     }
-    return has_room;
+    return has_capacity;
 }
 
 void ShownScene::letGo(Held& held) {

@@ -69,7 +69,7 @@ void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame
                            std::span<const Eye> inset_eyes, const FrameSettings& inset) {
     if (!other_.scene || draws_other_) { return; }
     // See remakeFrames.
-    if (!options_.load_first && other_.met && shown_.met && !other_.met->hasMethodOf(*shown_.met)) { return; }
+    if (!options_.load_first && other_.met && shown_.met && !other_.met->hasFramesOf(*shown_.met)) { return; }
     const glm::uvec3 shape = shapeOfFrames(eyes, frame);
     if (std::exchange(other_.frames.shape, shape) == shape) { return; }
     const auto meet = [&](StereoFrame& other, std::span<const Eye> seen, const FrameSettings& settings) {

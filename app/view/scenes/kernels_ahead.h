@@ -17,8 +17,12 @@ struct FramesAhead {
     StereoOptions stereo;
     glm::uvec2 size_px{0, 0};
     bool with_depth = false, tint = false;
+    // The headset's images, which pictures have memory for, and the wearer's resolution that these are for;
+    // zero: not known, or any.
+    glm::uvec2 images_px{0, 0};
+    double resolution_scale = 1.0;
     // Kinds of splats and degrees of colour that kernels were made for before.
-    std::set<std::pair<std::uint32_t, int>> known;
+    std::set<std::pair<std::uint32_t, int>> known = {};
 
     // True if the frames of both need the same kernels.
     [[nodiscard]] bool isLike(const FramesAhead& other) const;
@@ -26,6 +30,11 @@ struct FramesAhead {
     [[nodiscard]] bool hasMethodOf(FramesAhead other) const {
         other.size_px = size_px;
         return isLike(other);
+    }
+    // True if the same memory suits both.
+    [[nodiscard]] bool hasFramesOf(const FramesAhead& other) const {
+        return hasMethodOf(other) &&
+               (images_px == other.images_px || images_px.x == 0 || other.images_px.x == 0);
     }
 };
 

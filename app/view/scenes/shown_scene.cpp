@@ -95,18 +95,22 @@ void ShownScene::lookBeside(FileWorker& files) {
                });
 }
 
-void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint) {
+void ShownScene::expect(const ViewSettings& asked, glm::uvec2 size_px, const ImagesFor& images) {
     forgetGivenUp();
     if (!ahead_) { return; }
-    FramesAhead wanted{stereo, size_px, ahead_->with_depth, tint, {}};
+    FramesAhead wanted{asked.stereo, size_px, ahead_->with_depth, asked.tint};
     if (!ahead_->isLike(wanted)) {
         ahead_ = std::move(wanted);
         for (const Coming* const coming : {&next_, &other_next_}) {
             if (coming->loader) { coming->loader->expect(*ahead_); }
         }
     }
+    ahead_->images_px = images.size_px;
+    ahead_->resolution_scale = asked.resolution_scale;
     if (!shown_.scene || options_.load_first) { return; }
-    for (Held* const held : {&shown_, &other_}) { takeRemade(*held); }
+    for (Held* const held : {&shown_, &other_}) {
+        if (images.are_there) { takeRemade(*held); }
+    }
     if (maker_ && maker_->isDone()) {
         if (!maker_->hasGivenUp()) { haveReady(*made_for_, maker_->ahead()); }
         maker_.reset();
@@ -126,6 +130,7 @@ void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool ti
 
 void ShownScene::haveReady(Held& held, const FramesAhead& ahead) {
     held.ready = ahead;
+    held.ready->images_px = {0, 0};
     if (ahead_->isLike(ahead)) { ahead_->known.insert(kindOf(*held.scene)); }
 }
 
@@ -135,11 +140,16 @@ ViewSettings ShownScene::drawable(ViewSettings settings) const {
     FramesAhead wanted = *met;  // another size does not need new kernels
     wanted.stereo = settings.stereo;
     wanted.tint = settings.tint;
+    const Axes axes = settings.stereo.axes;  // which do not need other kernels
     if (!wanted.isLike(*met)) {
-        const Axes axes = settings.stereo.axes;  // which do not need other kernels
         settings.stereo = met->stereo;
         settings.stereo.axes = axes;
         settings.tint = met->tint;
+    }
+    if (!met->hasFramesOf(*ahead_)) {
+        // Of the same method: in the images that are there.
+        settings.stereo.axes = met->stereo.axes;
+        settings.resolution_scale = met->resolution_scale;
     }
     return settings;
 }

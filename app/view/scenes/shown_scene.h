@@ -4,6 +4,7 @@
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/files/picture_shot.h"
+#include "app/view/headset/images_ahead.h"
 #include "app/view/scenes/frame_maker.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
@@ -77,19 +78,21 @@ public:
     // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they
     // are made beside the frames, and then remakeFrames() is due, unless the options have the scene loaded
     // first, so that runs are repeatable. Before each frame.
-    void expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint);
-    // `settings`, with the method replaced by the one that is drawn until kernels and frames are ready.
+    // `images` are those for the settings, `size_px` is what an eye sees in them.
+    void expect(const ViewSettings& asked, glm::uvec2 size_px, const ImagesFor& images);
+    // `settings`, with the method, the resolution and axes replaced by those that are drawn until kernels,
+    // frames and images are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
     // After each frame's preparation: its frames have memory for these settings, or no pictures at all.
-    void keepDrawn(const ViewSettings& drawn);
+    void keepDrawn(const ViewSettings& drawn, glm::uvec2 images_px);
     void forgetDrawn() { drawing().met.reset(); }
-    // Where the eyes of the drawn scene are in one whose frames are of another method than is expected; empty
-    // if there is none.
+    // Where the eyes of the drawn scene are in one whose frames are of another method than is expected, or
+    // for images of another size; empty if there is none.
     [[nodiscard]] std::optional<Similarity> toRemake() const;
     // Makes frames of that one on a thread; a later expect() exchanges them for those that it has.
     void remakeFrames(FramesWanted wanted);
     // True if lists have capacity for frames of this size, see StereoFrame.
-    [[nodiscard]] bool makeRoomFor(glm::uvec2 size_px, glm::uvec2 inset_px);
+    [[nodiscard]] bool growFor(glm::uvec2 size_px, glm::uvec2 inset_px);
 
     // Begins to load another scene, and then `compared`, if given, to compare with it; the current one stays
     // until that is loaded. If the next scene is to be compared with the current one, it does that instead.
@@ -191,9 +194,9 @@ private:
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);
     void haveReady(Held& held, const FramesAhead& ahead);
-    [[nodiscard]] bool lacksMethod(const Held& held) const {
-        return held.scene && !held.remade.valid() && held.met && held.ready->hasMethodOf(*ahead_) &&
-               !held.met->hasMethodOf(*ahead_);
+    [[nodiscard]] bool lacksNewFrames(const Held& held) const {
+        return held.scene && !held.remade.valid() && held.met && held.ready->isLike(*ahead_) &&
+               !held.met->hasFramesOf(*ahead_);
     }
     // If there are new ones: frames of the scene go on with them.
     void takeRemade(Held& held);

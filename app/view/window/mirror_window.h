@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace binosplat {
 
@@ -28,8 +29,17 @@ public:
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
     void acquire() { pictures_->acquire(); }
+    // What keepEye keeps pixels in.
+    struct Eye {
+        glm::uvec2 most_px{0, 0};
+        std::optional<OwnImage> image;  // absent if the device lacks the memory
+    };
+    // On any thread. `format`: of the headset's images.
+    [[nodiscard]] static Eye makeEye(const Context& context, glm::uvec2 most_px, vk::Format format);
+    // From now on `eye` is used. Frames in flight may still use the one before, which is returned.
+    [[nodiscard]] Eye exchange(Eye eye) { return std::exchange(eye_, std::move(eye)); }
     // Between begin and submit: keeps an eye's presented pixels, of an image of `format`. The size may be any
-    // up to `most_px`; while that changes, no frame is in flight.
+    // up to `most_px`; while that changes, unless by exchange(), no frame is in flight.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, glm::uvec2 most_px,
                  vk::Format format);
     // Between begin and submit, once the canvas is drawn; may be repeated.
@@ -44,8 +54,8 @@ private:
     const Canvas& canvas_;
     EventWindow& events_;
     std::unique_ptr<WindowPictures> pictures_;
-    std::optional<OwnImage> eye_;
-    glm::uvec2 eye_px_{0, 0}, eye_most_px_{0, 0};
+    Eye eye_;
+    glm::uvec2 eye_px_{0, 0};
     glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
     bool was_down_ = false;
 };

@@ -261,9 +261,9 @@ bool Transfer::beginBody() {
         refused_ = fmt::format("is {} bytes long, expected at most {}", expected, request_.most_bytes);
     } else if (exceedsCache(expected)) {
         refused_ = fmt::format("is {} bytes long, more than {}", expected, cacheLimit());
-    } else if (expected > file_->roomBytes()) {
+    } else if (expected > file_->spaceBytes()) {
         refused_ = fmt::format("is {} bytes long, but the cache's disk has only {} free; free some space",
-                               expected, file_->roomBytes());
+                               expected, file_->spaceBytes());
     }
     if (!refused_.empty()) { return false; }
     is_sized_ = true;

@@ -76,7 +76,7 @@ std::int64_t secondsNow() {
 }  // namespace
 
 IncomingFile::IncomingFile(fs::path path, File file)
-    : path_(std::move(path)), file_(std::move(file)), room_(path_.parent_path()) {}
+    : path_(std::move(path)), file_(std::move(file)), space_(path_.parent_path()) {}
 
 IncomingFile::~IncomingFile() {
     file_.reset();
@@ -85,7 +85,7 @@ IncomingFile::~IncomingFile() {
 }
 
 bool IncomingFile::write(const char* data, std::size_t bytes) {
-    if (!room_.holds(size_bytes_, bytes) || std::fwrite(data, 1, bytes, file_.get()) != bytes) {
+    if (!space_.holds(size_bytes_, bytes) || std::fwrite(data, 1, bytes, file_.get()) != bytes) {
         return false;
     }
     size_bytes_ += bytes;

@@ -4,7 +4,7 @@
 // ignored.
 #pragma once
 
-#include "engine/disk_room.h"
+#include "engine/disk_space.h"
 #include "engine/platform.h"
 
 #include <cstdint>
@@ -26,14 +26,14 @@ public:
     // False if the disk is too full for them.
     [[nodiscard]] bool write(const char* data, std::size_t bytes);
     // How much may be written in total, to leave some of the disk free.
-    [[nodiscard]] std::uint64_t roomBytes() const { return room_.bytes(); }
+    [[nodiscard]] std::uint64_t spaceBytes() const { return space_.bytes(); }
     [[nodiscard]] std::uint64_t sizeBytes() const { return size_bytes_; }
 
 private:
     friend class WebCache;
     std::filesystem::path path_;
     File file_;
-    DiskRoom room_;
+    DiskSpace space_;
     std::uint64_t size_bytes_ = 0;
     bool is_kept_ = false;
 };

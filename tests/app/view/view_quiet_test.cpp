@@ -351,6 +351,33 @@ TEST_CASE("another method is drawn once its frames are made, and no frame waits 
     checkQuiet(work);
 }
 
+TEST_CASE("the wearer's own resolution, and axes that stay or do not, come without a wait") {
+    for (const std::string mode : {"temporal", "predicted", "shared"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        Acts acts("rate 45\nsize 100 100\nframes none\nvisibility-mask on\n");
+        acts.wait(kMethodSeconds);
+        for (const char* const widget : {"resolution", "Axes stay", "Axes stay"}) {
+            acts.point(onMethod(widget)).wait(0.25).press("right trigger", 0.3).wait(kMethodSeconds);
+        }
+        const ViewRun run = runView(work, "resolution", acts.script(),
+                                    "builtin:slanted-wall --hide-hands --axes view --mode " + mode +
+                                        withConfig(work, kMethodPage + "resolution-scale = 0.5\n"),
+                                    kWatched + " SIMULATED_OPENXR_CLOCK=real");
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        CHECK_FALSE(run.says("frames shown incomplete"));
+        std::set<int> widths;
+        for (std::size_t frame = 30; frame < run.frames.size(); ++frame) {
+            if (run.layers(frame, "projection").empty()) { continue; }
+            widths.insert(run.view(frame).at("rect").at(2).get<int>());
+        }
+        // Small, large, and large with room around; the governor may choose others.
+        CHECK(widths.size() > 2);
+        checkQuiet(work);
+    }
+}
+
 TEST_CASE("new letters come without a wait") {
     const Workplace work;
     REQUIRE(work.run("scene one-splat --out '\u05d7\u05d3\u05e8.ply'").exit_code == 0);

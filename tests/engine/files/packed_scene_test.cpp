@@ -79,7 +79,7 @@ TEST_CASE("a scene is not unpacked into more room than there is, and leaves noth
     const auto unpackInto = [&](const std::string& name, std::vector<std::uint64_t> room) {
         std::size_t looks = 0;
         std::filesystem::path used;
-        const Unpacking how{.room = [&](const std::filesystem::path& place) {
+        const Unpacking how{.space = [&](const std::filesystem::path& place) {
             used = place;
             CHECK(std::filesystem::is_empty(place) == (looks == 0));
             return room.at(looks++);

@@ -104,7 +104,7 @@ TEST_CASE_FIXTURE(Atelier,
             for (Eye& eye : wide) { eye.intrinsics.fx *= 0.99, eye.intrinsics.fy *= 0.99; }
             more = static_cast<double>(pairsOf(wide)) / pairs;
         }
-        if (more > StereoFrame::kRoomAhead) { continue; }
+        if (more > StereoFrame::kCapacityAhead) { continue; }
         ++tried;
         KeptFrame frame(context(), scene, kNoRoom);
         frame.renderAhead(narrow, seeing());

@@ -37,8 +37,8 @@ TEST_CASE_FIXTURE(
 
         KeptFrame grows(context(), scene, kNoRoom);
         goAhead(grows, eyesOf(least_px), settings, 3);
-        CHECK_FALSE(grows.makeRoomFor(most_px));
-        while (!grows.makeRoomFor(most_px)) {
+        CHECK_FALSE(grows.growFor(most_px));
+        while (!grows.growFor(most_px)) {
             goAhead(grows, eyesOf(least_px), settings, 1);
             std::this_thread::yield();
         }

@@ -348,10 +348,10 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     ViewSettings settings;
     options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
     const glm::uvec2 size_px(64, 64);
-    ShownScene scenes(context(), options, log, FramesAhead{settings.stereo, size_px, false, false, {}});
+    ShownScene scenes(context(), options, log, FramesAhead{settings.stereo, size_px, false, false});
     // Chosen while the first scene loads.
     settings.stereo.mode = Mode::kShared;
-    scenes.expect(settings.stereo, size_px, false);
+    scenes.expect(settings, size_px, {size_px, true});
     REQUIRE(scenes.take(state).empty());
     CHECK(scenes.drawable(settings) == settings);
     Eye middle{};
@@ -375,12 +375,12 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     // sliders apply at once.
     const ViewSettings shared = settings;
     settings.stereo.mode = Mode::kTwoPass;
-    scenes.expect(settings.stereo, size_px, false);
+    scenes.expect(settings, size_px, {size_px, true});
     CHECK(these(scenes.isMakingMethod(), scenes.drawable(settings).stereo) == these(true, shared.stereo));
     const auto waitUntilReady = [&] {
         while (scenes.isMakingMethod()) {
             std::this_thread::yield();
-            scenes.expect(settings.stereo, size_px, false);
+            scenes.expect(settings, size_px, {size_px, true});
             if (scenes.toRemake()) {
                 scenes.remakeFrames({{eyes.begin(), eyes.end()}, frameNow(), {}, {}, {}});
             }
@@ -394,14 +394,14 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     CHECK(drawsWithoutCompiling());
     for (int frame = 0; frame < 2; ++frame) { scenes.passOver(); }
     settings.stereo.warp.budget = 0.9;
-    scenes.expect(settings.stereo, size_px, false);
+    scenes.expect(settings, size_px, {size_px, true});
     CHECK(these(scenes.isMakingMethod(), scenes.drawable(settings)) == these(false, settings));
     // Chosen, and then changed back.
     const ViewSettings two_pass = settings;
     settings.stereo.mode = Mode::kPaper;
-    scenes.expect(settings.stereo, size_px, false);
+    scenes.expect(settings, size_px, {size_px, true});
     settings = two_pass;
-    scenes.expect(settings.stereo, size_px, false);
+    scenes.expect(settings, size_px, {size_px, true});
     waitUntilReady();
     CHECK(scenes.drawable(settings) == settings);
     // Splats of another kind need other kernels.

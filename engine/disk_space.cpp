@@ -1,5 +1,5 @@
 // The free space that the system reports for a disk, less what must stay free.
-#include "engine/disk_room.h"
+#include "engine/disk_space.h"
 
 #include "engine/platform.h"
 
@@ -19,24 +19,24 @@ constexpr std::uint64_t kUntoldBytes = std::uint64_t{1} << 62;
 
 }  // namespace
 
-std::uint64_t roomOn(const std::filesystem::space_info& disk) {
+std::uint64_t spaceOn(const std::filesystem::space_info& disk) {
     const std::uint64_t kept = std::min<std::uint64_t>(kFreeBytes, disk.capacity / kFreeShare);
     return disk.available - std::min<std::uint64_t>(disk.available, kept);
 }
 
-std::uint64_t roomIn(const std::filesystem::path& folder) {
+std::uint64_t spaceIn(const std::filesystem::path& folder) {
     std::error_code error;
     const std::filesystem::space_info disk = std::filesystem::space(folder, error);
     if (error) { return 0; }
-    const std::uint64_t bytes = disk.capacity > 0 ? roomOn(disk) : kUntoldBytes;
+    const std::uint64_t bytes = disk.capacity > 0 ? spaceOn(disk) : kUntoldBytes;
     const std::optional<std::filesystem::space_info> memory = memoryBehind(folder);
-    return memory ? std::min(bytes, roomOn(*memory)) : bytes;
+    return memory ? std::min(bytes, spaceOn(*memory)) : bytes;
 }
 
-DiskRoom::DiskRoom(std::filesystem::path folder, Measure measure)
+DiskSpace::DiskSpace(std::filesystem::path folder, Measure measure)
     : folder_(std::move(folder)), measure_(std::move(measure)), bytes_(measure_(folder_)) {}
 
-bool DiskRoom::holds(std::uint64_t written, std::uint64_t more) {
+bool DiskSpace::holds(std::uint64_t written, std::uint64_t more) {
     if (written - looked_at_bytes_ >= kLookBytes) {
         looked_at_bytes_ = written;
         bytes_ = written + measure_(folder_);

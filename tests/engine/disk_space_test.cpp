@@ -1,10 +1,10 @@
 // Facts about the free space on disks.
-#include "engine/disk_room.h"
+#include "engine/disk_space.h"
 
 #include "engine/platform.h"
 #include "tests/suite.h"
 
-SUITE(disk_room) {
+SUITE(disk_space) {
 
 TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
     constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
@@ -14,7 +14,7 @@ TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
                                                    {1000 * kGib, 0, 0},
                                                    {10 * kGib, kGib, kGib / 2},
                                                    {0, 0, 0}}) {
-        CHECK(roomOn({capacity, available, available}) == room);
+        CHECK(spaceOn({capacity, available, available}) == room);
     }
 }
 
@@ -22,7 +22,7 @@ TEST_CASE("a disk is looked at again after 16 MiB, and what others wrote meanwhi
     constexpr std::uint64_t kMib = std::uint64_t{1} << 20;
     std::vector<std::uint64_t> found{100 * kMib, 20 * kMib, 4 * kMib};
     std::size_t looks = 0;
-    DiskRoom room("a folder", [&](const std::filesystem::path& folder) {
+    DiskSpace room("a folder", [&](const std::filesystem::path& folder) {
         CHECK(folder == "a folder");
         return found.at(looks++);
     });
@@ -44,8 +44,8 @@ TEST_CASE(
     "a folder in memory has no more room than memory, one on a disk no more than that, and one that is not "
     "there none") {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
-    CHECK(roomIn(folder) <= std::filesystem::space(folder).available);
-    CHECK(roomIn(folder / "not there") == 0);
+    CHECK(spaceIn(folder) <= std::filesystem::space(folder).available);
+    CHECK(spaceIn(folder / "not there") == 0);
     CHECK_FALSE(memoryBehind("/proc").has_value());
     if (!std::filesystem::exists("/dev/shm")) { return; }
     const std::optional<std::filesystem::space_info> memory = memoryBehind("/dev/shm");
@@ -53,4 +53,4 @@ TEST_CASE(
     CHECK(memory->available == between(0, memory->capacity));
 }
 
-}  // SUITE(disk_room)
+}  // SUITE(disk_space)

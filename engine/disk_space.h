@@ -8,16 +8,16 @@
 namespace binosplat {
 
 // The smaller of 1 GiB and 5 % of a disk stays free for other programs.
-std::uint64_t roomOn(const std::filesystem::space_info& disk);
+std::uint64_t spaceOn(const std::filesystem::space_info& disk);
 // The same for the disk of a folder; if that is in memory, also the same share of free memory. Empty if the
 // folder cannot be examined.
-std::uint64_t roomIn(const std::filesystem::path& folder);
+std::uint64_t spaceIn(const std::filesystem::path& folder);
 
-class DiskRoom {
+class DiskSpace {
 public:
     using Measure = std::function<std::uint64_t(const std::filesystem::path& folder)>;
 
-    explicit DiskRoom(std::filesystem::path folder, Measure measure = roomIn);
+    explicit DiskSpace(std::filesystem::path folder, Measure measure = spaceIn);
 
     // How much may be written in all, as of the last check.
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
