@@ -36,7 +36,7 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
 // The time to reproject a tile, in units of the affiliated eye's rendering time per pair of tile and splat,
 // or of both eyes' if they are rendered at once.
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
-    const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
+    const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_reprojected");
     if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
     const std::uint64_t left = counterOf(*shared, "tile_pairs_left"),
                         right = counterOf(*shared, "tile_pairs_right");

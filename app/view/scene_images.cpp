@@ -71,19 +71,20 @@ ImagesFor SceneRenderer::imagesFor(ConnectedHeadset& headset, const ViewSettings
     }
     const bool are_there = ahead.have(
         wanted.asked, wanted.size_px,
-        [this, &session = std::as_const(headset.session), wanted, takes_depth = takes_depth_,
+        [&context = context_, &presenter = presenter_, format = format_,
+         &session = std::as_const(headset.session), wanted, takes_depth = takes_depth_,
          turned_px = presenter_.turns() && wanted.asked.stay ? wanted.asked.view_px : glm::uvec2(0),
          has_window] {
             const auto make = [&](glm::uvec2 px) {
-                auto images = std::make_unique<EyeImages>(session, presenter_, format_, px);
+                auto images = std::make_unique<EyeImages>(session, presenter, format, px);
                 if (!takes_depth) { images->dropDepth(); }
                 return images;
             };
             const glm::uvec2 inset_px = wanted.asked.inset_px;
             ImageSet set{make(wanted.size_px), inset_px.x > 0 ? make(inset_px) : nullptr, {}, {}};
-            set.presented =
-                presenter_.makeBuffers(glm::max(wanted.size_px, inset_px), set.eyes->takesDepth(), turned_px);
-            if (has_window) { set.mirrored = MirrorWindow::makeEye(context_, wanted.size_px, format_); }
+            set.presented = Presenter::makeBuffers(context, glm::max(wanted.size_px, inset_px),
+                                                   set.eyes->takesDepth(), turned_px);
+            if (has_window) { set.mirrored = MirrorWindow::makeEye(context, wanted.size_px, format); }
             return set;
         });
     return {ahead.sizePx(), are_there};
@@ -102,7 +103,8 @@ void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& set
     const ImagesAsked before = std::exchange(images_asked_, wanted.asked);
     if (!headset.images) { return makeImages(headset, wanted.size_px, inset_px); }
     if (std::optional<ImageSet> made = headset.images_ahead.take(wanted.asked)) {
-        return exchangeImages(headset, std::move(*made), window);
+        exchangeImages(headset, std::move(*made), window);
+        if (suit(headset, wanted)) { return; }  // unless angles have grown meanwhile
     }
     const glm::uvec2 before_px = headset.images->sizePx();
     const glm::uvec2 inset_before_px = headset.inset_images ? headset.inset_images->sizePx() : glm::uvec2(0);
@@ -116,7 +118,9 @@ void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& set
 }
 
 void SceneRenderer::exchangeImages(ConnectedHeadset& headset, ImageSet images, MirrorWindow* window) {
-    if (!takes_depth_) { images.eyes->dropDepth(); }  // refused meanwhile
+    for (EyeImages* const eyes : {images.eyes.get(), images.insets.get()}) {
+        if (eyes != nullptr && !takes_depth_) { eyes->dropDepth(); }  // refused meanwhile
+    }
     std::swap(headset.images, images.eyes);
     std::swap(headset.inset_images, images.insets);
     images.presented = presenter_.exchange(std::move(images.presented));

@@ -23,7 +23,7 @@ Traffic warpTraffic(const WarpFacts& facts) {
     // Only predicted leaves tiles out before it reprojects anything.
     const double moved = !predict                    ? 1.0
                          : facts.counters.moves == 0 ? 0.0
-                                                     : facts.counters.moved_tiles / tiles;
+                                                     : facts.counters.reprojected_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
     const double summed = (facts.sums_even_rows ? 0.5 : 1.0) * kWord;  // and as many arrivals cleared

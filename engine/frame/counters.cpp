@@ -31,7 +31,7 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         }
         if (const auto& work = warped->work) {
             add({{"tiles_cheap", work->tiles_cheap},
-                 {"tiles_weighed_as_moved", work->tiles_weighed_as_moved}});
+                 {"tiles_weighed_as_reprojected", work->tiles_weighed_as_reprojected}});
             add({{"work_full", work->full},
                  {"work_patched", work->patched},
                  {"work_saved_by_moving", work->saved_by_moving}});

@@ -25,7 +25,8 @@ struct WarpedCounters {
     };
     // In pairs of tile and splat; if tiles are weighed.
     struct Work {
-        std::uint64_t tiles_cheap = 0, tiles_weighed_as_moved = 0, full = 0, patched = 0, saved_by_moving = 0;
+        std::uint64_t tiles_cheap = 0, tiles_weighed_as_reprojected = 0, full = 0, patched = 0,
+                      saved_by_moving = 0;
     };
     std::optional<Classes> pixels;
     std::uint64_t tiles_shown = 0;  // of pictures that are made from others

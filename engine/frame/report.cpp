@@ -32,7 +32,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
     counters.tiles_predicted = warp.predicted_tiles;
     if (settings.choice == TileChoice::kPredicted) {
         counters.work = {.tiles_cheap = warp.cheap_tiles,
-                         .tiles_weighed_as_moved = warp.moved_tiles,
+                         .tiles_weighed_as_reprojected = warp.reprojected_tiles,
                          .full = warp.picture_cost,
                          .patched = warp.chosen_cost,
                          .saved_by_moving = warp.saved_cost};

@@ -28,18 +28,22 @@ void Presenter::makeKernels() {
     kernels_.get(TurnKernel{});
 }
 
-Presenter::Buffers Presenter::makeBuffers(glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const {
+Presenter::Buffers Presenter::makeBuffers(const Context& context, glm::uvec2 size_px, bool with_depth,
+                                          glm::uvec2 view_px) {
     Buffers buffers;
-    grow(buffers, size_px, with_depth, view_px);
+    grow(context, buffers, size_px, with_depth, view_px);
     return buffers;
 }
 
-void Presenter::reserve(glm::uvec2 size_px, bool with_depth) { grow(buffers_, size_px, with_depth, {0, 0}); }
+void Presenter::reserve(glm::uvec2 size_px, bool with_depth) {
+    grow(context_, buffers_, size_px, with_depth, {0, 0});
+}
 
-void Presenter::grow(Buffers& buffers, glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const {
+void Presenter::grow(const Context& context, Buffers& buffers, glm::uvec2 size_px, bool with_depth,
+                     glm::uvec2 view_px) {
     const auto fit = [&](Buffer& buffer, const char* name, glm::uvec2 px) {
         const std::uint64_t bytes = sizeof(gpu::uint) * px.x * px.y;
-        if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }
+        if (buffer.bytes() < bytes) { buffer = Buffer(context, name, bytes); }
     };
     fit(buffers.pixels, "presented pixels", size_px);
     if (with_depth) { fit(buffers.depths, "presented depths", size_px); }
@@ -78,7 +82,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
 
 const Buffer& Presenter::turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px,
                               const glm::dmat3& picture_from_view) {
-    grow(buffers_, picture_px, false, view_px);
+    grow(context_, buffers_, picture_px, false, view_px);
     const glm::mat3 matrix(picture_from_view);
     const gpu::TurnPass pass{.pixels = buffers_.pixels.address<gpu::uint>(),
                              .shown = buffers_.turned.address<gpu::uint>(),

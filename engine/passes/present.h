@@ -41,7 +41,8 @@ public:
         Buffer turned;          // see turn()
     };
     // On any thread. `view_px`: of turn(); zero without it. Throws Error if there is not enough memory.
-    [[nodiscard]] Buffers makeBuffers(glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const;
+    [[nodiscard]] static Buffers makeBuffers(const Context& context, glm::uvec2 size_px, bool with_depth,
+                                             glm::uvec2 view_px);
     // From now on `buffers` is used. Frames in flight may still use the one before, which is returned.
     [[nodiscard]] Buffers exchange(Buffers buffers) { return std::exchange(buffers_, std::move(buffers)); }
     // For pictures of that size, while nothing recorded is in flight. Throws Error if there is not enough
@@ -62,7 +63,8 @@ public:
                        const glm::dmat3& picture_from_view);
 
 private:
-    void grow(Buffers& buffers, glm::uvec2 size_px, bool with_depth, glm::uvec2 view_px) const;
+    static void grow(const Context& context, Buffers& buffers, glm::uvec2 size_px, bool with_depth,
+                     glm::uvec2 view_px);
 
     const Context& context_;
     KernelCache kernels_;

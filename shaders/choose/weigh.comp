@@ -89,7 +89,7 @@ void main() [[subgroup_uniform_control_flow]] {
     if (subgroupElect()) {
         atomicAdd(pass.counters.at[0].picture_cost, group_cost);
         atomicAdd(pass.counters.at[0].saved_cost, group_saved);
-        atomicAdd(pass.counters.at[0].moved_tiles, group_moved);
+        atomicAdd(pass.counters.at[0].reprojected_tiles, group_moved);
         atomicAdd(pass.counters.at[0].shown_tiles, group_shown);
     }
     if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
@@ -106,7 +106,7 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.counters.at[0].per_visible = dispatchOver(pass.visible.at[0].count, kNewcomersBlock);
     } else {
         pass.counters.at[0].moves = 0;
-        pass.counters.at[0].moved_tiles = 0;
+        pass.counters.at[0].reprojected_tiles = 0;
         pass.counters.at[0].per_pixel_block = DispatchSize(0, 0, 0);
         // Hidden tiles become background all the same.
         pass.counters.at[0].per_row = shown < tiles ? rows : DispatchSize(0, 0, 0);

@@ -46,7 +46,7 @@ bool mayBeMean(WarpView warp, uint y) {
 // The rows above and below this one are even, and finished before any odd row is begun.
 void putMeans(uint y, uint width, uint tiles) {
     for (uint item = gl_LocalInvocationIndex; item < mean_count * kTileSize; item += kWarpGroup) {
-        const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize],
+        const uint tile = reprojected_tiles[kMostTiles - 1 - item / kTileSize],
                    x = tile * kTileSize + item % kTileSize;
         if (kClasses && item % kTileSize == 0) {
             tile_classes[tile] = pass.pixel_classes.at[(y - 1) * tiles + tile];

@@ -235,16 +235,16 @@ struct WarpCounters {
     uint predicted_tiles;
     uint cheap_tiles;
     uint newcomers;
-    uint moved_tiles;    // before any is chosen for its error
-    uint picture_cost;   // of all visible tiles, in pairs: the work of rendering an eye
-    uint shown_tiles;    // tiles that no lens hides
-    uint saved_cost;     // by reprojecting tiles, as far as known before the choice
-    uint chosen_cost;    // of what is rendered
-    uint moves;          // 1: something is warped
-    uint pays;           // 1: reprojecting pays, or would have paid in a frame that could not
-    uint last_bin;       // of the price list: where the budget ends
-    uint left_for_last;  // of the budget; all ones: it does not end there
-    uint waiting_tiles;  // above a bound, with too little budget for them
+    uint reprojected_tiles;  // before any is chosen for its error
+    uint picture_cost;       // of all visible tiles, in pairs: the work of rendering an eye
+    uint shown_tiles;        // tiles that no lens hides
+    uint saved_cost;         // by reprojecting tiles, as far as known before the choice
+    uint chosen_cost;        // of what is rendered
+    uint moves;              // 1: something is warped
+    uint pays;               // 1: reprojecting pays, or would have paid in a frame that could not
+    uint last_bin;           // of the price list: where the budget ends
+    uint left_for_last;      // of the budget; all ones: it does not end there
+    uint waiting_tiles;      // above a bound, with too little budget for them
     // With a history, sums of tiles' squared errors in kSquareSteps: as expected for those that are not
     // rendered, as expected for those that are, and as found; and what pixels twice as wide would lose on
     // measured tiles, times the frames that each has waited.

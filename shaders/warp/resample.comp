@@ -49,11 +49,11 @@ shared uint tile_classes[kClasses ? kLongestRow / 16 : 1];
 const uint kMostTiles = kLongestRow / 16;
 
 // Tiles of this row, unordered; from the end those in which this row is a mean of others.
-shared uint moved_tiles[kMostTiles];
+shared uint reprojected_tiles[kMostTiles];
 shared uint moved_count;
 shared uint mean_count;
 shared uint hidden_count;
-// Slots of moved_tiles whose tiles have pixels that nothing reached.
+// Slots of reprojected_tiles whose tiles have pixels that nothing reached.
 shared uint open_tiles[kPlaced ? 1 : kMostTiles];
 shared uint open_bits[kPlaced ? 1 : (kMostTiles + 31) / 32];
 shared uint open_count;
@@ -93,9 +93,9 @@ void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
         const uint kind = pass.tile_kinds.at[first_tile + tile];
         if (kind == 0 && moves) {
             if (may_be_mean && pass.tile_errors.at[first_tile + tile] == kSeenCoarsely) {
-                moved_tiles[kMostTiles - 1 - atomicAdd(mean_count, 1)] = tile;
+                reprojected_tiles[kMostTiles - 1 - atomicAdd(mean_count, 1)] = tile;
             } else {
-                moved_tiles[atomicAdd(moved_count, 1)] = tile;
+                reprojected_tiles[atomicAdd(moved_count, 1)] = tile;
             }
         }
         if (kind == kTileHidden) { atomicAdd(hidden_count, 1); }
@@ -241,7 +241,7 @@ void main() [[subgroup_uniform_control_flow]] {
     uint begin = 0;
     [[dont_unroll]] do {
         const uint item = begin + thread, slot = item / kTileSize;
-        const uint tile = item < items ? moved_tiles[slot] : tiles, x = tile * kTileSize + item % kTileSize;
+        const uint tile = item < items ? reprojected_tiles[slot] : tiles, x = tile * kTileSize + item % kTileSize;
         uint steps = 0, arrival = 0;
         if (x < width) {
             if (!kPlaced) { arrival = arrivalAt(row, x); }
@@ -264,7 +264,7 @@ void main() [[subgroup_uniform_control_flow]] {
         begin = 0;
         [[dont_unroll]] do {
             const uint item = begin + thread;
-            const uint tile = item < open_items ? moved_tiles[open_tiles[item / kTileSize]] : tiles,
+            const uint tile = item < open_items ? reprojected_tiles[open_tiles[item / kTileSize]] : tiles,
                        x = tile * kTileSize + item % kTileSize;
             uint steps = 0;
             if (x < width && arrivalAt(row, x) == 0) {

@@ -28,6 +28,7 @@ std::optional<Similarity> ShownScene::placeWithoutFrames(const ViewState& state)
 
 void ShownScene::makeFrames(FramesWanted wanted) {
     Coming& coming = lacksFrames() == &next_ ? next_ : other_next_;
+    coming.like = drawing().met;
     coming.frames =
         std::async(std::launch::async, [this, scene = coming.loader->loaded(), wanted = std::move(wanted)] {
             return binosplat::makeFrames(context_, kernels_, scene->gpu_scene, wanted);
@@ -85,10 +86,15 @@ void ShownScene::remakeFrames(FramesWanted wanted) {
         });
 }
 
+void ShownScene::takeRemade() {
+    const auto lacksNone = [&](const Held& held) { return hasExpectedFrames(held) || held.hasRemade(); };
+    if (!lacksNone(shown_) || !lacksNone(other_)) { return; }
+    takeRemade(shown_);
+    takeRemade(other_);
+}
+
 void ShownScene::takeRemade(Held& held) {
-    if (!held.remade.valid() || held.remade.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-        return;
-    }
+    if (!held.hasRemade()) { return; }
     try {
         RemadeFrames remade = held.remade.get();
         const GpuScene& scene = held.scene->gpu_scene;
@@ -108,7 +114,8 @@ void ShownScene::takeRemade(Held& held) {
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // Its frames are made as they are drawn, which says what is wrong.
     } catch (const Error&) {}
-    held.met = held.remade_for;
+    // Unless nobody wants that one any more.
+    if (held.remade_for->hasFramesOf(*ahead_)) { held.met = held.remade_for; }
 }
 
 bool ShownScene::growFor(glm::uvec2 size_px, glm::uvec2 inset_px) {

@@ -41,12 +41,13 @@ std::string ShownScene::takeOther() {
         std::unique_ptr<LoadedScene> taken = coming.loader->take();
         maker_.reset();
         other_.frames = takeFrames(coming);
+        const bool is_met = other_.frames.frame && coming.like;
         if (!other_.frames.frame) {
             other_.frames.frame = std::make_unique<StereoFrame>(context_, taken->gpu_scene, kernels_);
         }
         other_.scene = std::move(taken);
         if (ahead_) { haveReady(other_, coming.loader->madeFor()); }
-        other_.met = other_.ready;
+        other_.met = is_met ? coming.like : other_.ready;
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         dropOther();
         return error.what();

@@ -108,9 +108,7 @@ void ShownScene::expect(const ViewSettings& asked, glm::uvec2 size_px, const Ima
     ahead_->images_px = images.size_px;
     ahead_->resolution_scale = asked.resolution_scale;
     if (!shown_.scene || options_.load_first) { return; }
-    for (Held* const held : {&shown_, &other_}) {
-        if (images.are_there) { takeRemade(*held); }
-    }
+    if (images.are_there) { takeRemade(); }
     if (maker_ && maker_->isDone()) {
         if (!maker_->hasGivenUp()) { haveReady(*made_for_, maker_->ahead()); }
         maker_.reset();
@@ -161,6 +159,7 @@ std::string ShownScene::take(ViewState& state) {
         maker_.reset();
         SceneFrames frames = takeFrames(coming);
         dropOther();
+        const bool is_met = frames.frame && coming.like;
         if (frames.frame == nullptr) { shown_.remade = {}; }  // it reads the scene that goes at once
         if (shown_.scene) { left_[shown_.scene->place] = state.sceneFromRoom(); }
         if (frames.frame) {
@@ -171,7 +170,7 @@ std::string ShownScene::take(ViewState& state) {
         }
         shown_.scene = std::move(taken);
         if (ahead_) { haveReady(shown_, coming.loader->madeFor()); }
-        shown_.met = shown_.ready;
+        shown_.met = is_met ? coming.like : shown_.ready;
     } catch (const vk::DeviceLostError&) { throw; } catch (const DeviceError& error) {
         const bool lacks_memory = error.kind() == DeviceError::Kind::kMemory;
         return lacks_memory && shown_.scene ? makeWay(state) : goOnWithout(error.what());

@@ -151,10 +151,15 @@ private:
         std::optional<FramesAhead> met;    // and those that there is memory for; absent: not known
         std::optional<FramesAhead> remade_for;
         std::future<RemadeFrames> remade;  // last: its thread reads the scene
+
+        [[nodiscard]] bool hasRemade() const {
+            return remade.valid() && remade.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        }
     };
     // A scene that loads, and then its frames.
     struct Coming {
         std::unique_ptr<SceneLoader> loader;  // null: there is none
+        std::optional<FramesAhead> like;      // the frames that it is to have; absent: not known
         std::future<SceneFrames> frames;      // that are made; its thread ends before the loader's scene goes
 
         [[nodiscard]] bool isLoaded() const { return loader && loader->isDone(); }
@@ -194,10 +199,17 @@ private:
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);
     void haveReady(Held& held, const FramesAhead& ahead);
-    [[nodiscard]] bool lacksNewFrames(const Held& held) const {
-        return held.scene && !held.remade.valid() && held.met && held.ready->isLike(*ahead_) &&
-               !held.met->hasFramesOf(*ahead_);
+    [[nodiscard]] bool hasExpectedFrames(const Held& held) const {
+        return !held.scene || !held.met || held.met->hasFramesOf(*ahead_);
     }
+    // While a scene loads, no other kernels are made; those of another size are then made with the frames.
+    [[nodiscard]] bool lacksNewFrames(const Held& held) const {
+        const bool loads = next_.loader || other_next_.loader;
+        return !hasExpectedFrames(held) && !held.remade.valid() &&
+               (loads ? held.ready->hasMethodOf(*ahead_) : held.ready->isLike(*ahead_));
+    }
+    // Both scenes' frames are exchanged at once, since they are drawn into the same images.
+    void takeRemade();
     // If there are new ones: frames of the scene go on with them.
     void takeRemade(Held& held);
     // Eyes of the drawn scene, as the other one counts.

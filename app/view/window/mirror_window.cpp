@@ -126,7 +126,7 @@ void MirrorWindow::record(Commands& commands) {
     const auto show = [&](vk::Image image, glm::uvec2 size_px, const WindowPart& part) {
         blitInto(commands, image, size_px, target, fittedInto(size_px, part));
     };
-    if (eye_.image) { show(*eye_.image->image, eye_px_, {{0, 0}, {split, height}}); }
+    if (eye_.image && eye_px_.x > 0) { show(*eye_.image->image, eye_px_, {{0, 0}, {split, height}}); }
     if (split < width) { show(canvas_.image(), canvas_.sizePx(), {{split, 0}, {width - split, height}}); }
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
 }

@@ -37,7 +37,10 @@ public:
     // On any thread. `format`: of the headset's images.
     [[nodiscard]] static Eye makeEye(const Context& context, glm::uvec2 most_px, vk::Format format);
     // From now on `eye` is used. Frames in flight may still use the one before, which is returned.
-    [[nodiscard]] Eye exchange(Eye eye) { return std::exchange(eye_, std::move(eye)); }
+    [[nodiscard]] Eye exchange(Eye eye) {
+        eye_px_ = {0, 0};  // nothing is kept in it yet
+        return std::exchange(eye_, std::move(eye));
+    }
     // Between begin and submit: keeps an eye's presented pixels, of an image of `format`. The size may be any
     // up to `most_px`; while that changes, unless by exchange(), no frame is in flight.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, glm::uvec2 most_px,

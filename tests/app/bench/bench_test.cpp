@@ -230,7 +230,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye,
     predicted.pass_ms = {{{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 1.0},
                          {{Role::kAffiliated, FrameStage::kChoose, "newcomers"}, 5.0},
                          {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 2.0}};
-    predicted.counters = {{"tiles_weighed_as_moved", 300}};
+    predicted.counters = {{"tiles_weighed_as_reprojected", 300}};
     shared.pass_ms = {{{Role::kDominant, FrameStage::kSplat, "rasterize"}, 7.0},
                       {{Role::kAffiliated, FrameStage::kSplat, "project"}, 1.5},
                       {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 2.5}};
@@ -243,7 +243,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye,
     results[1].pass_ms = {{{Role::kBoth, FrameStage::kSplat, "rasterize"}, 17.0}};  // 1 us a pair
     compareModes(results);
     CHECK(results[0].move_cost.value() == doctest::Approx(10.0));
-    results[0].counters["tiles_weighed_as_moved"] = 0;
+    results[0].counters["tiles_weighed_as_reprojected"] = 0;
     compareModes(results);
     CHECK_FALSE(results[0].move_cost.has_value());
 }

@@ -352,16 +352,19 @@ TEST_CASE("another method is drawn once its frames are made, and no frame waits 
 }
 
 TEST_CASE("the wearer's own resolution, and axes that stay or do not, come without a wait") {
-    for (const std::string mode : {"temporal", "predicted", "shared"}) {
+    const std::string alone = "--mode ", compared = "--compare builtin:fence --mode ";
+    for (const std::string& mode :
+         {alone + "temporal", alone + "predicted", alone + "shared", compared + "temporal"}) {
         CAPTURE(mode);
         const Workplace work;
         Acts acts("rate 45\nsize 100 100\nframes none\nvisibility-mask on\n");
         acts.wait(kMethodSeconds);
         for (const char* const widget : {"resolution", "Axes stay", "Axes stay"}) {
             acts.point(onMethod(widget)).wait(0.25).press("right trigger", 0.3).wait(kMethodSeconds);
+            if (mode.starts_with(compared)) { acts.hold("right a", 0.5).wait(0.5); }
         }
         const ViewRun run = runView(work, "resolution", acts.script(),
-                                    "builtin:slanted-wall --hide-hands --axes view --mode " + mode +
+                                    "builtin:slanted-wall --hide-hands --axes view " + mode +
                                         withConfig(work, kMethodPage + "resolution-scale = 0.5\n"),
                                     kWatched + " SIMULATED_OPENXR_CLOCK=real");
         INFO(run.outcome.output << run.outcome.errors);

@@ -278,7 +278,7 @@ TEST_CASE_FIXTURE(
     CHECK_FALSE(reprojects(first));
     CHECK(isWhole(first, eyes));
     CHECK(reprojects(second));
-    CHECK(countOf(second.result, "tiles_weighed_as_moved") > 0);
+    CHECK(countOf(second.result, "tiles_weighed_as_reprojected") > 0);
     CHECK(second.result.work_rendered < 0.5);
     // A different request is answered at once.
     CHECK_FALSE((render(outside), reprojects(render(outside))));

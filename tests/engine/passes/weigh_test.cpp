@@ -68,7 +68,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     const bool moves = counters.moves != 0;
     const glm::uvec2 size_px = c.sizePx(), tiles = tilesOf(size_px);
     const auto sizeOf = [](const gpu::DispatchSize& size) { return glm::uvec3(size.x, size.y, size.z); };
-    CHECK(counters.moved_tiles == (moves ? moved : 0));
+    CHECK(counters.reprojected_tiles == (moves ? moved : 0));
     CHECK(sizeOf(counters.per_pixel_block) == (moves ? glm::uvec3(tiles.x, 2 * tiles.y, 1) : glm::uvec3(0)));
     const bool rows_wanted = moves || std::ranges::count(expected.kinds, TileKind::kHidden) > 0;
     CHECK(sizeOf(counters.per_row) == (rows_wanted ? glm::uvec3(size_px.y, 1, 1) : glm::uvec3(0)));
