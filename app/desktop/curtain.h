@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/desktop/eye_parts.h"
-#include "app/view/panel/canvas.h"
 #include "app/view/window/window_drawing.h"
+#include "engine/gpu/own_image.h"
 
 #include <array>
 

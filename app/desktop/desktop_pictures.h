@@ -2,9 +2,9 @@
 #pragma once
 
 #include "app/desktop/eye_parts.h"
-#include "app/view/panel/canvas.h"
 #include "app/view/window/window_drawing.h"
 #include "engine/frame/stereo_frame.h"
+#include "engine/gpu/own_image.h"
 #include "engine/passes/present.h"
 
 #include <array>

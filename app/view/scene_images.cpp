@@ -125,7 +125,7 @@ void SceneRenderer::exchangeImages(ConnectedHeadset& headset, ImageSet images, M
     std::swap(headset.inset_images, images.insets);
     images.presented = presenter_.exchange(std::move(images.presented));
     if (window != nullptr && images.mirrored) {
-        images.mirrored = window->exchange(std::move(*images.mirrored));
+        images.mirrored = window->exchange(std::move(images.mirrored), headset.images->sizePx());
     }
     headset.images_ahead.letGo(std::move(images));
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/view/headset/eye_images.h"
-#include "app/view/window/mirror_window.h"
+#include "engine/gpu/own_image.h"
 
 #include <functional>
 #include <future>
@@ -19,17 +19,11 @@ struct ImagesAsked {
     bool operator==(const ImagesAsked&) const = default;
 };
 
-// Images for some settings: their size, and whether frames may be drawn into them without a wait.
-struct ImagesFor {
-    glm::uvec2 size_px{0, 0};
-    bool are_there = false;
-};
-
 // All that is as large as the headset's images.
 struct ImageSet {
     std::unique_ptr<EyeImages> eyes, insets;  // insets: in a session that has them
     Presenter::Buffers presented;
-    std::optional<MirrorWindow::Eye> mirrored;
+    std::optional<OwnImage> mirrored;  // an eye, in a window on the desktop
 };
 
 class ImagesAhead {

@@ -4,6 +4,7 @@
 
 #include "app/view/room/panel_pointer.h"
 #include "engine/gpu/commands.h"
+#include "engine/gpu/own_image.h"
 
 #include <glm/glm.hpp>
 
@@ -15,14 +16,6 @@
 namespace binosplat {
 
 class PanelFont;
-
-// An image of one level, in memory of its own.
-struct OwnImage {
-    OwnImage(const Context& context, const char* name, glm::uvec2 size_px, vk::Format format,
-             vk::ImageUsageFlags usage);
-    vk::raii::DeviceMemory memory{nullptr};
-    vk::raii::Image image{nullptr};
-};
 
 // One at a time: ImGui has one current context. Throws Error (exit code 3) if the queue cannot draw.
 class Canvas {

@@ -4,7 +4,6 @@
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/files/picture_shot.h"
-#include "app/view/headset/images_ahead.h"
 #include "app/view/scenes/frame_maker.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
@@ -19,6 +18,12 @@
 #include <vector>
 
 namespace binosplat {
+
+// Images for some settings: their size, and whether frames may be drawn into them without a wait.
+struct ImagesFor {
+    glm::uvec2 size_px{0, 0};
+    bool are_there = false;
+};
 
 class ShownScene {
 public:

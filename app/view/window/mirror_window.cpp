@@ -90,13 +90,13 @@ WindowInput MirrorWindow::poll() {
     return input;
 }
 
-MirrorWindow::Eye MirrorWindow::makeEye(const Context& context, glm::uvec2 most_px, vk::Format format) {
-    Eye eye{most_px, {}};
+std::optional<OwnImage> MirrorWindow::makeEye(const Context& context, glm::uvec2 most_px, vk::Format format) {
+    std::optional<OwnImage> eye;
     const vk::Format raw =
         texelLayoutOf(format).blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
     try {
-        eye.image.emplace(context, "the window's eye", most_px, raw,
-                          Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
+        eye.emplace(context, "the window's eye", most_px, raw,
+                    Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
     } catch (const vk::OutOfDeviceMemoryError&) {
     } catch (const vk::OutOfHostMemoryError&) {
         // The window then shows only the panel: the headset matters more.
@@ -107,13 +107,14 @@ MirrorWindow::Eye MirrorWindow::makeEye(const Context& context, glm::uvec2 most_
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, glm::uvec2 most_px,
                            vk::Format format) {
     eye_px_ = size_px;
-    if (eye_.most_px != most_px) {
-        eye_ = {};
+    if (eye_most_px_ != most_px) {
+        eye_most_px_ = most_px;
+        eye_.reset();
         eye_ = makeEye(context_, most_px, format);
     }
-    if (!eye_.image) { return; }
-    commands.copyToImage(pixels, *eye_.image->image, size_px, vk::ImageAspectFlagBits::eColor);
-    changeLayout(commands, *eye_.image->image, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
+    if (!eye_) { return; }
+    commands.copyToImage(pixels, *eye_->image, size_px, vk::ImageAspectFlagBits::eColor);
+    changeLayout(commands, *eye_->image, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
 }
 
 void MirrorWindow::record(Commands& commands) {
@@ -126,7 +127,7 @@ void MirrorWindow::record(Commands& commands) {
     const auto show = [&](vk::Image image, glm::uvec2 size_px, const WindowPart& part) {
         blitInto(commands, image, size_px, target, fittedInto(size_px, part));
     };
-    if (eye_.image && eye_px_.x > 0) { show(*eye_.image->image, eye_px_, {{0, 0}, {split, height}}); }
+    if (eye_ && eye_px_.x > 0) { show(*eye_->image, eye_px_, {{0, 0}, {split, height}}); }
     if (split < width) { show(canvas_.image(), canvas_.sizePx(), {{split, 0}, {width - split, height}}); }
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
 }

@@ -29,16 +29,14 @@ public:
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
     void acquire() { pictures_->acquire(); }
-    // What keepEye keeps pixels in.
-    struct Eye {
-        glm::uvec2 most_px{0, 0};
-        std::optional<OwnImage> image;  // absent if the device lacks the memory
-    };
-    // On any thread. `format`: of the headset's images.
-    [[nodiscard]] static Eye makeEye(const Context& context, glm::uvec2 most_px, vk::Format format);
-    // From now on `eye` is used. Frames in flight may still use the one before, which is returned.
-    [[nodiscard]] Eye exchange(Eye eye) {
+    // What keepEye keeps pixels in; absent if the device lacks the memory. On any thread. `format`: of the
+    // headset's images.
+    [[nodiscard]] static std::optional<OwnImage> makeEye(const Context& context, glm::uvec2 most_px,
+                                                         vk::Format format);
+    // From now on that one is used. Frames in flight may still use the one before, which is returned.
+    [[nodiscard]] std::optional<OwnImage> exchange(std::optional<OwnImage> eye, glm::uvec2 most_px) {
         eye_px_ = {0, 0};  // nothing is kept in it yet
+        eye_most_px_ = most_px;
         return std::exchange(eye_, std::move(eye));
     }
     // Between begin and submit: keeps an eye's presented pixels, of an image of `format`. The size may be any
@@ -57,8 +55,8 @@ private:
     const Canvas& canvas_;
     EventWindow& events_;
     std::unique_ptr<WindowPictures> pictures_;
-    Eye eye_;
-    glm::uvec2 eye_px_{0, 0};
+    std::optional<OwnImage> eye_;
+    glm::uvec2 eye_px_{0, 0}, eye_most_px_{0, 0};
     glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
     bool was_down_ = false;
 };
