@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -76,37 +75,40 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
         steps_.push_back({0.0, leaf, level, 0, splats, pagesOf(splats, settings.page_splats)});
     }
     std::reverse(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.end());
-    std::uint64_t splats_before = 0, pages_before = 0;
-    std::uint32_t level_before = 0;
-    double rate = std::numeric_limits<double>::max();
+    const auto errorOf = [&](const Step& step) { return static_cast<double>(errors[step.level]); };
+    const auto gain = [&](const Step& from, const Step& to) {
+        return std::max(errorOf(from) - errorOf(to), 0.0) / static_cast<double>(to.splats - from.splats);
+    };
     std::size_t kept = first;
     for (std::size_t i = first; i < steps_.size(); ++i) {
         Step step = steps_[i];
-        const std::uint64_t splats = step.splats, pages = step.pages;
-        step.order = static_cast<std::uint32_t>(i - first);
-        const double between = std::sqrt(static_cast<double>(splats) *
-                                         static_cast<double>(step.order == 0 ? splats : splats_before));
+        const bool is_coarsest = i == first;
+        const Step& coarser = steps_[is_coarsest ? i : i - 1];
         double seen = weight * area_px;
         if (!is_first_) {
             seen *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept;
         }
-        step.worth = seen / between;
-        const bool is_wrong = step.order > 0 && !errors.empty() && errors[level_before] > kMostError;
+        step.worth = seen / std::sqrt(static_cast<double>(step.splats) * static_cast<double>(coarser.splats));
+        const bool is_wrong = !is_coarsest && !errors.empty() && errors[coarser.level] > kMostError;
         const double finest_px = is_wrong ? kCloser * settings.finest_px : settings.finest_px;
-        if (step.order > 0 && step.worth < finest_px * finest_px) { break; }
-        if (step.order > 0 && !errors.empty()) {
-            const double less = std::max(
-                0.0, static_cast<double>(errors[level_before]) - static_cast<double>(errors[step.level]));
-            step.worth = seen * (rate = std::min(rate, less / static_cast<double>(splats - splats_before)));
+        if (!is_coarsest && step.worth < finest_px * finest_px) { break; }
+        if (!is_coarsest && !errors.empty()) {
+            // A step that gains less for each of its splats than the next one is taken together with it.
+            while (kept - first > 1 &&
+                   gain(steps_[kept - 1], step) > gain(steps_[kept - 2], steps_[kept - 1])) {
+                --kept;
+            }
+            step.worth = seen * gain(steps_[kept - 1], step);
         }
-        step.splats -= splats_before;
-        step.pages -= pages_before;
-        splats_before = splats;
-        pages_before = pages;
-        level_before = step.level;
         steps_[kept++] = step;
     }
     steps_.resize(kept);
+    for (std::size_t i = kept; i-- > first;) {
+        steps_[i].order = static_cast<std::uint32_t>(i - first);
+        if (i == first) { continue; }
+        steps_[i].splats -= steps_[i - 1].splats;
+        steps_[i].pages -= steps_[i - 1].pages;
+    }
 }
 
 const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const ChoiceSettings& settings,

@@ -4,10 +4,11 @@
 // level of m splats to the next finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance
 // in pixels, which is also what its splats gain each if the error of a leaf is its area times the square of
 // the distance. Where the errors of levels were measured, a step is worth what the error falls by, times the
-// area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest
-// worth down while the budget lasts, and not at all where splats are closer than pixels. Splats thus end up
-// as dense on the screen everywhere as the budget allows, or denser where they are missed more: if a level's
-// error is known to be worse than 36 dB, steps are taken until its splats are twice as close.
+// area, for each splat that it adds; a step that gains less than the next one is taken together with it.
+// Steps are taken from the greatest worth down while the budget lasts, and not at all where splats are closer
+// than pixels. Splats thus end up as dense on the screen everywhere as the budget allows, or denser where
+// they are missed more: if a level's error is known to be worse than 36 dB, steps are taken until its splats
+// are twice as close.
 #pragma once
 
 #include "engine/files/lod_tree.h"

@@ -202,6 +202,16 @@ TEST_CASE(
     Chooser flat(leaves);
     CHECK(std::ranges::all_of(flat.choose(eye, within(1 << 24)).levels,
                               [](std::uint32_t level) { return level == 0; }));
+    // Nor does it keep a finer one away that mends more than elsewhere.
+    for (LodLeaf& leaf : leaves) {
+        leaf.errors = leaf.low.x < 0.0f ? std::vector{0.0f, 0.001f, 0.002f, 0.004f}
+                                        : std::vector{0.0f, 0.03f, 0.03f, 0.031f};
+    }
+    Chooser stepped(leaves);
+    const LevelChoices& mended = stepped.choose(eyeAt({0.5, 0.5, -1.0}), budget);
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+        if (leaves[l].low.x >= 0.0f && leaves[l].low.z < 3.0f) { CHECK(mended.levels[l] == 0); }
+    }
 }
 
 TEST_CASE("a head that trembles changes nothing") {
