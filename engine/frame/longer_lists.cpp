@@ -2,19 +2,11 @@
 #include "engine/frame/longer_lists.h"
 
 #include "engine/error.h"
+#include "engine/ready.h"
 
-#include <chrono>
 #include <utility>
 
 namespace binosplat {
-namespace {
-
-template <typename T>
-bool isReady(const std::future<T>& result) {
-    return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
-}  // namespace
 
 bool LongerLists::isUnderWay() const {
     return making_.valid() || old_ || (freeing_.valid() && !isReady(freeing_));
@@ -46,7 +38,7 @@ std::optional<std::size_t> LongerLists::bring(FrameBuffers& lists) {
         freeing_ = std::async(std::launch::async, [old = std::move(*old_)]() mutable { old = {}; });
         old_.reset();
     }
-    if (!making_.valid() || !isReady(making_)) { return std::nullopt; }
+    if (!isReady(making_)) { return std::nullopt; }
     return exchange(lists);
 }
 

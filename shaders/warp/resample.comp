@@ -241,7 +241,8 @@ void main() [[subgroup_uniform_control_flow]] {
     uint begin = 0;
     [[dont_unroll]] do {
         const uint item = begin + thread, slot = item / kTileSize;
-        const uint tile = item < items ? reprojected_tiles[slot] : tiles, x = tile * kTileSize + item % kTileSize;
+        const uint tile = item < items ? reprojected_tiles[slot] : tiles;
+        const uint x = tile * kTileSize + item % kTileSize;
         uint steps = 0, arrival = 0;
         if (x < width) {
             if (!kPlaced) { arrival = arrivalAt(row, x); }

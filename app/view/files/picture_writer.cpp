@@ -5,12 +5,12 @@
 #include "engine/picture/image_io.h"
 #include "engine/picture/join.h"
 #include "engine/platform.h"
+#include "engine/ready.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 #include <utility>
 
@@ -98,9 +98,7 @@ void PictureWriter::beginNext() {
 }
 
 std::optional<std::string> PictureWriter::takeOutcome() {
-    const bool is_done =
-        under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    return is_done ? finish() : std::nullopt;
+    return isReady(under_way_) ? finish() : std::nullopt;
 }
 
 std::optional<std::string> PictureWriter::finish() {

@@ -1,21 +1,14 @@
 // Images are made and freed where no frame waits for it.
 #include "app/view/headset/images_ahead.h"
 
-#include <chrono>
+#include "engine/ready.h"
+
 #include <utility>
 
 namespace binosplat {
-namespace {
-
-template <typename T>
-bool isReady(const std::future<T>& result) {
-    return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
-}  // namespace
 
 void ImagesAhead::land() {
-    if (!coming_.valid() || !isReady(coming_)) { return; }
+    if (!isReady(coming_)) { return; }
     try {
         made_ = coming_.get();
     } catch (const vk::DeviceLostError&) { throw; } catch (const std::exception&) {

@@ -150,9 +150,7 @@ void ShownScene::passOver(bool nothing) {
         }));
     }
     std::erase_if(leaving_, [](const Leaving& leaving) { return leaving.frames_left == 0; });
-    std::erase_if(freeing_, [](const std::future<void>& freed) {
-        return freed.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    });
+    std::erase_if(freeing_, [](const std::future<void>& freed) { return isReady(freed); });
 }
 
 void ShownScene::freeGone() {

@@ -8,8 +8,8 @@
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
 #include "engine/error.h"
+#include "engine/ready.h"
 
-#include <chrono>
 #include <future>
 #include <map>
 #include <memory>
@@ -157,9 +157,7 @@ private:
         std::optional<FramesAhead> remade_for;
         std::future<RemadeFrames> remade;  // last: its thread reads the scene
 
-        [[nodiscard]] bool hasRemade() const {
-            return remade.valid() && remade.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-        }
+        [[nodiscard]] bool hasRemade() const { return isReady(remade); }
     };
     // A scene that loads, and then its frames.
     struct Coming {
@@ -168,9 +166,7 @@ private:
         std::future<SceneFrames> frames;      // that are made; its thread ends before the loader's scene goes
 
         [[nodiscard]] bool isLoaded() const { return loader && loader->isDone(); }
-        [[nodiscard]] bool hasMade() const {
-            return frames.valid() && frames.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-        }
+        [[nodiscard]] bool hasMade() const { return isReady(frames); }
         [[nodiscard]] bool isMaking() const { return frames.valid() && !hasMade(); }
         // It could not be loaded, or there are frames of it.
         [[nodiscard]] bool isMet() const { return loader->loaded() == nullptr || hasMade(); }
