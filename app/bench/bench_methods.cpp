@@ -55,7 +55,7 @@ std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOption
                    frame_time = one.settings.extract("frame-time");
         BenchMethod& method = methods.emplace_back(one.name, runOptions(one.settings, base).stereo);
         if (resolution) { method.resolution = readNumber(resolution.mapped(), 0.1, 1.0); }
-        if (frame_time) { method.frame_ms = readNumber(frame_time.mapped(), 0.0, 10000.0); }
+        if (frame_time) { method.frame_time = readFrameTime(frame_time.mapped()); }
     }
     return methods;
 }

@@ -17,7 +17,7 @@ struct BenchMethod {
     double resolution = 1.0;
     // The time that a governor keeps frames of `temporal` within; 0: no governor. Unset: as --frame-time
     // says.
-    std::optional<double> frame_ms = {};
+    std::optional<FrameTime> frame_time = {};
 
     // True if both eyes equal two full renders.
     [[nodiscard]] bool isExact() const { return rendersBothInFull(stereo.mode) && resolution == 1.0; }

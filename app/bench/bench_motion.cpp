@@ -46,12 +46,12 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     std::vector<std::vector<FrameResult>> timed;
     std::optional<MotionPoint> timed_point;
     if (!context.isSoftware()) {
-        timed_point.emplace(context, gpu_scene, view_run, plan, name, options.frame_ms);
+        timed_point.emplace(context, gpu_scene, view_run, plan, name, options.frame_time);
         MotionPoint& point = *timed_point;
         warmUp(context, plan.warm_up, [&] { point.warm(start); });
         for (const double time_s : times_s) { timed.push_back(point.time(camerasAt(time_s))); }
     }
-    MotionPoint point(context, gpu_scene, view_run, plan, name, options.frame_ms);
+    MotionPoint point(context, gpu_scene, view_run, plan, name, options.frame_time);
     if (timed_point) { point.chooseAs(*timed_point); }
     for (std::uint32_t i = 0; timed.empty() && i < plan.warm_up; ++i) { point.warm(start); }
     ProgressLine progress(name);

@@ -175,7 +175,7 @@ bool needSame(const BenchMethod& one, const BenchMethod& other) {
     if (one.resolution != other.resolution) { return false; }
     if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
     if (a.mode == Mode::kPredicted || hasHistory(a.mode) || hasHistory(b.mode)) {
-        return a == b && one.frame_ms == other.frame_ms;
+        return a == b && one.frame_time == other.frame_time;
     }
     return !reprojects(a.mode) ||
            (a.warp.center_rois == b.warp.center_rois &&

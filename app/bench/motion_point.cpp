@@ -1,6 +1,7 @@
 // The costs of a frame of each method, and the distance of its pictures from full renders.
 #include "app/bench/motion_point.h"
 
+#include "app/bench/statistics.h"
 #include "app/scores/metrics.h"
 #include "app/scores/visible_errors.h"
 #include "engine/picture/turned.h"
@@ -13,6 +14,8 @@
 namespace binosplat {
 
 namespace {
+
+constexpr std::size_t kRecentTwoPasses = 3;
 
 double pairsOf(const FrameResult& frame) {
     double pairs = 0.0;
@@ -107,17 +110,18 @@ void setTimes(MotionFrame& frame, const FrameResult& result) {
 }
 
 MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run,
-                         const BenchPlan& plan, std::string name, double frame_ms)
+                         const BenchPlan& plan, std::string name, const FrameTime& frame_time)
     : camera_(run.camera),
       shared_(plainMethod(Mode::kShared, run)),
+      two_pass_(plainMethod(Mode::kTwoPass, run)),
       frames_(context, scene),
       name_(std::move(name)) {
     for (const BenchMethod& method : plan.methods) {
         if (method.stereo.mode == Mode::kMono) { continue; }
         MethodHistory& sequence = sequences_.emplace_back(MethodHistory{method, {}});
         const bool can_be_governed = method.stereo.mode == Mode::kTemporal && method.resolution == 1.0;
-        sequence.frame_ms = can_be_governed ? method.frame_ms.value_or(frame_ms) : 0.0;
-        if (sequence.frame_ms > 0.0) { sequence.governor.emplace(); }
+        if (can_be_governed) { sequence.frame_time = method.frame_time.value_or(frame_time); }
+        if (sequence.frame_time.amount > 0.0) { sequence.governor.emplace(); }
     }
     if (run.stereo.axes == Axes::kStay) { axes_.emplace(glm::radians(kAxesMarginDegrees)); }
 }
@@ -144,14 +148,33 @@ void MotionPoint::chooseAs(const MotionPoint& timed) {
     for (std::size_t i = 0; i < sequences_.size(); ++i) { sequences_[i].chosen = timed.sequences_[i].chosen; }
 }
 
+void MotionPoint::timeTwoPass(const Posed& pose) {
+    if (std::ranges::none_of(sequences_, [](const MethodHistory& sequence) {
+            return sequence.governor && sequence.frame_time.unit == FrameTime::kShareOfTwoPass;
+        })) {
+        return;
+    }
+    two_pass_ms_.push_back(render(pose, two_pass_, false).result.gpu_total_ms);
+    if (first_two_pass_ms_ == 0.0) { first_two_pass_ms_ = two_pass_ms_.front(); }
+    if (two_pass_ms_.size() > kRecentTwoPasses) { two_pass_ms_.pop_front(); }
+}
+
+std::pair<double, double> MotionPoint::timeAndLimit(const FrameTime& limit, double ms) const {
+    if (limit.unit == FrameTime::kMs) { return {ms, limit.amount}; }
+    // As if neither the machine nor what is in view had changed since the first pose.
+    const double now_ms = median({two_pass_ms_.begin(), two_pass_ms_.end()});
+    return {ms * first_two_pass_ms_ / now_ms, limit.amount * first_two_pass_ms_};
+}
+
 MethodFrames::Rendered MotionPoint::render(const Posed& pose, MethodHistory& sequence) {
     if (!sequence.governor) { return render(pose, sequence.method, true); }
     Governor& governor = *sequence.governor;
     governor.wish(Quality::kBalanced, Mode::kTemporal, {sequence.method.stereo.warp.budget, 1.0});
     if (sequence.next == sequence.chosen.size()) { sequence.chosen.push_back(governor.settings()); }
     MethodFrames::Rendered rendered = render(pose, sequence.method, true, sequence.chosen[sequence.next++]);
-    governor.measure({.gpu_ms = rendered.result.gpu_total_ms,
-                      .period_ms = sequence.frame_ms,
+    const auto [ms, most_ms] = timeAndLimit(sequence.frame_time, rendered.result.gpu_total_ms);
+    governor.measure({.gpu_ms = ms,
+                      .period_ms = most_ms,
                       .work = rendered.result.work_rendered,
                       .warp_error = rendered.result.warp_error,
                       .half_loss = rendered.result.half_loss});
@@ -166,12 +189,14 @@ void MotionPoint::warm(const Cameras& cameras) {
 std::vector<FrameResult> MotionPoint::time(const Cameras& cameras) {
     std::vector<FrameResult> results;
     const Posed pose = posed(cameras);
+    timeTwoPass(pose);
     for (MethodHistory& sequence : sequences_) { results.push_back(render(pose, sequence).result); }
     return results;
 }
 
 void MotionPoint::pass(const Cameras& cameras) {
     const Posed pose = posed(cameras);
+    timeTwoPass(pose);
     for (MethodHistory& sequence : sequences_) {
         if (hasHistory(sequence.method.stereo.mode)) { render(pose, sequence); }
     }
@@ -202,6 +227,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
                        std::vector<MotionFrame>& result) {
     std::map<std::optional<Order>, FullRender> full_by_order;
     const Posed pose = posed(cameras);
+    timeTwoPass(pose);
     for (MethodHistory& sequence : sequences_) {
         shared_.stereo.order = sequence.method.stereo.order;
         FullRender& full = full_by_order[shared_.stereo.order];

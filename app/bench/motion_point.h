@@ -7,19 +7,20 @@
 #include "app/bench/seen_through_lens.h"
 
 #include <array>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
 
 class MotionPoint {
 public:
-    // `frame_ms`: how long a frame of `temporal` may take, or 0; if given, a governor chooses its resolution
-    // and bound.
+    // `frame_time`: of `temporal`; if limited, a governor chooses its resolution and bound.
     MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan,
-                std::string name, double frame_ms = 0.0);
+                std::string name, const FrameTime& frame_time = {});
     // Repeats the choices of `timed` for the same poses, however long frames take now.
     void chooseAs(const MotionPoint& timed);
 
@@ -39,7 +40,7 @@ private:
     struct MethodHistory {
         BenchMethod method;
         std::array<Image, 2> error;  // pictures - full renders, of the previous frame
-        double frame_ms = 0.0;       // what a governed frame may take
+        FrameTime frame_time = {};   // of a governed frame
         std::optional<Governor> governor = {};
         // The governor's choice for each pose so far, or that of another run.
         std::vector<GovernedSettings> chosen = {};
@@ -60,6 +61,10 @@ private:
     Posed posed(const Cameras& cameras);
     // A frame of a method, with what its governor chooses.
     MethodFrames::Rendered render(const Posed& pose, MethodHistory& sequence);
+    // If a limit is a share of two-pass's time.
+    void timeTwoPass(const Posed& pose);
+    // The time of a governed frame and its limit, in ms.
+    [[nodiscard]] std::pair<double, double> timeAndLimit(const FrameTime& limit, double ms) const;
     MethodFrames::Rendered render(const Posed& pose, const BenchMethod& method, bool keep_history,
                                   const std::optional<GovernedSettings>& chosen = {});
     // As a wearer sees it.
@@ -68,11 +73,13 @@ private:
     FullRender renderFull(const Posed& pose);
 
     CameraOptions camera_;
-    BenchMethod shared_;
+    BenchMethod shared_, two_pass_;
     MethodFrames frames_;
     std::optional<StayingAxes> axes_;
     std::string name_;
     std::vector<MethodHistory> sequences_;
+    std::deque<double> two_pass_ms_;  // at the last poses; empty unless a limit is a share of it
+    double first_two_pass_ms_ = 0.0;
     // Set from the first frame on, if there is a headset: its eyes move as one.
     std::optional<SeenThroughLens> lens_;
     std::map<std::optional<Order>, FullRender> full_before_;

@@ -166,6 +166,17 @@ auto text() {
     return make<Members...>("", readText);
 }
 
+// With units, see amounts.h; its default is in the row's text.
+template <auto... Members>
+auto amount(auto parse) {
+    using At = Path<Members...>;
+    using Owner = typename At::Owner;
+    OptionField<Owner> made;
+    made.read = [parse](const Setting& setting, Owner& owner) { At::in(owner) = parse(setting); };
+    made.value = [](const Owner&) { return OptionValue(); };
+    return made;
+}
+
 // The name of a file or a folder.
 template <auto... Members>
 auto file(std::string (*parse)(const Setting&) = readText) {

@@ -22,31 +22,9 @@ constexpr std::uint64_t kMaxMoveCost = 1'000'000;
 // (kMaxPixelError).
 constexpr double kMaxExpectedError = 8.0;
 constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
-constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;
 constexpr std::uint64_t kMaxFrames = 1'000'000'000;
 constexpr std::uint64_t kMaxStep = 1'000'000;
 constexpr double kMaxSeconds = 1e6, kMaxRateHz = 10'000.0;
-
-// A share, a number of splats, or a size such as 50MB.
-Keep readKeep(const Setting& setting) {
-    constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{
-        {{"KB", 1e3}, {"MB", 1e6}, {"GB", 1e9}}};
-    const std::string text = setting.text();
-    for (const auto& [unit, bytes] : kUnits) {
-        if (!text.ends_with(unit)) { continue; }
-        const std::optional<double> number =
-            parseNumber(std::string_view(text).substr(0, text.size() - unit.size()));
-        if (number && *number > 0.0) { return {*number * bytes, Keep::kBytes}; }
-    }
-    const std::optional<double> number = parseNumber(text);
-    if (number && *number > 0.0 && *number <= 1.0) { return {*number, Keep::kShare}; }
-    if (number && *number > 1.0 && *number <= static_cast<double>(kMaxSplats) &&
-        *number == std::floor(*number)) {
-        return {*number, Keep::kSplats};
-    }
-    fail("{} is {}, must be a share of the splats up to 1, a number of them, or a size such as 50MB",
-         setting.origin, text.empty() ? "empty" : text);
-}
 
 constexpr unsigned kPictures = kRender | kBench;          // commands that make pictures without a headset
 constexpr unsigned kWearer = kPictures | kView;           // commands that show a scene to two eyes
@@ -285,10 +263,11 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"rate", "", kBench, "HZ", "frames per second of --motion, interpolated between its poses",
           "one for each pose"},
          field::number<kMotionSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
-        {{"frame-time", "", kBench, "MS",
-          "with --motion: time that a frame of temporal may take; the viewer's governor (balanced) chooses "
-          "resolution and bound to keep to it; 0: no limit"},
-         field::number<&BenchOptions::frame_ms>(0.0, 10000.0)},
+        {{"frame-time", "", kBench, "MS|PERCENT",
+          "with --motion: time that a frame of temporal may take, in ms or as a share of two-pass's time "
+          "(70%); the viewer's governor (balanced) chooses resolution and bound to keep to it",
+          "no limit"},
+         field::amount<&BenchOptions::frame_time>(readFrameTime)},
         {{"photos", "", kBench, "DIR", "photographs taken by the cameras of --cameras, to compare with"},
          field::file<&BenchOptions::photos_folder>()},
         {{"orders", "", kBench, "",
@@ -357,13 +336,7 @@ std::span<const OptionRow<ConvertOptions>> convertRows() {
           "keep a share of the splats (0.5), a number of them (100000), or as many as fit into a file of a "
           "given size (50MB): those that contribute most to the picture, adjusted to make up for the others",
           "all of them"},
-         {.read = [](const Setting& setting, ConvertOptions& convert) { convert.keep = readKeep(setting); },
-          .value = [](const ConvertOptions&) { return OptionValue(); },
-          .range = "",
-          .least = {},
-          .most = {},
-          .slider_most = {},
-          .choices = {}}},
+         field::amount<&ConvertOptions::keep>(readKeep)},
         {{"levels", "", kConvert, "N",
           "levels of detail in OUT/lod-meta.json, each with half the splats of the one before",
           "until fewer than 50,000 are left"},

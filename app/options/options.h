@@ -1,6 +1,7 @@
 // The user's settings, typed and checked: the command line over the config file over the defaults.
 #pragma once
 
+#include "app/options/amounts.h"
 #include "app/scores/flip.h"
 #include "engine/geometry.h"
 #include "engine/passes/stereo_settings.h"
@@ -112,9 +113,8 @@ struct BenchOptions {
     MotionAxes motion_axes = MotionAxes::kOpenXr;  // --motion-axes: of the recording
     MotionSegment segment;                         // --from, --seconds, --rate: of the motion
     std::string photos_folder;                     // --photos: photographs of the cameras of --cameras
-    // --frame-time: of a motion's frames; 0: as long as they take
-    double frame_ms = 0.0;
-    std::uint32_t every = 1;  // --every: of a motion's poses or of the cameras
+    FrameTime frame_time;                          // --frame-time: of a motion's frames
+    std::uint32_t every = 1;                       // --every: of a motion's poses or of the cameras
     // --repeats: measured frames per method; 0: as the config says
     std::uint32_t repeats = 0;
     // --orders: compare each order of splats with each pixel's own order
@@ -152,12 +152,6 @@ struct SceneOptions {
     std::string name;
     std::uint64_t splats = 0;  // 0: the scene's own default
     std::filesystem::path out;
-};
-
-// How much of a scene to keep.
-struct Keep {
-    double amount = 1.0;
-    enum Unit { kShare, kSplats, kBytes } unit = kShare;
 };
 
 struct ConvertOptions {

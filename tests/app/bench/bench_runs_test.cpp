@@ -40,17 +40,21 @@ TEST_CASE("where frames may take next to nothing the controller lowers resolutio
     bench.write("b.toml",
                 "[bench]\nmodes = [\"temporal\"]\nwarm-up = 0\n[[methods]]\nname = \"at will\"\n"
                 "mode = \"temporal\"\nframe-time = 0\n");
-    bench.go(
-        "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv --rate 60 --frame-time 0.001 "
-        "--out out");
-    std::vector<std::string> ends;
-    for (const std::string& row : linesIn(bench.bytesOf("out/motion.csv"))) {
-        if (contains(row, ",temporal,temporal,")) { ends.push_back(row); }
-        CHECK((ends.size() > 0 || row.ends_with("error_bound_db") || row.ends_with(",,")));
+    const std::string play =
+        "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv --rate 60 --out ";
+    for (const std::string limit : {"0.001", "1%"}) {
+        CAPTURE(limit);
+        bench.go(play + "out --frame-time " + limit);
+        std::vector<std::string> ends;
+        for (const std::string& row : linesIn(bench.bytesOf("out/motion.csv"))) {
+            if (contains(row, ",temporal,temporal,")) { ends.push_back(row); }
+            CHECK((ends.size() > 0 || row.ends_with("error_bound_db") || row.ends_with(",,")));
+        }
+        REQUIRE(ends.size() >= 10);
+        CHECK(ends.front().ends_with(",1,30"));
+        CHECK(ends.back().ends_with(",0.6,20"));
     }
-    REQUIRE(ends.size() >= 10);
-    CHECK(ends.front().ends_with(",1,30"));
-    CHECK(ends.back().ends_with(",0.6,20"));
+    bench.checkRefused(play + "none --frame-time 0%", 1, "--frame-time is 0%, must be a number of ms");
     bench.checkRefused("bench builtin:step-edge --frame-time 5 --out none", 2, "without --motion");
 }
 
