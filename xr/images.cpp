@@ -47,6 +47,15 @@ void copyImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Imag
     changeLayout(commands, to, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
 }
 
+void copyToTexture(const vk::raii::CommandBuffer& commands, vk::Buffer texels, vk::Image texture,
+                   glm::uvec2 size_px) {
+    changeLayout(commands, texture, Layout::eShaderReadOnlyOptimal, Layout::eTransferDstOptimal);
+    commands.copyBufferToImage(
+        texels, texture, Layout::eTransferDstOptimal,
+        vk::BufferImageCopy(0, 0, 0, {kColour, 0, 0, 1}, {}, {size_px.x, size_px.y, 1}));
+    changeLayout(commands, texture, Layout::eTransferDstOptimal, Layout::eShaderReadOnlyOptimal);
+}
+
 void decodeImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Image encoded, vk::Image to,
                  glm::uvec2 size_px) {
     copy(commands, from, encoded, size_px);

@@ -15,6 +15,9 @@ void copyImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Imag
 // sRGB format with their bytes.
 void decodeImage(const vk::raii::CommandBuffer& commands, vk::Image from, vk::Image encoded, vk::Image to,
                  glm::uvec2 size_px);
+// A whole texture from tightly packed rows, which shaders may read before and after.
+void copyToTexture(const vk::raii::CommandBuffer& commands, vk::Buffer texels, vk::Image texture,
+                   glm::uvec2 size_px);
 void clearImage(const vk::raii::CommandBuffer& commands, vk::Image image, const glm::vec4& colour);
 // Fills the other `levels` with smaller copies of level 0, each from the one before. All are attachments
 // before and after.

@@ -11,8 +11,8 @@
 
 #include <backends/imgui_impl_vulkan.h>
 
+#include <algorithm>
 #include <limits>
-#include <mutex>
 #include <utility>
 
 namespace binosplat {
@@ -67,7 +67,6 @@ Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format)
 }
 
 Canvas::~Canvas() {
-    dropOld();
     ImGui_ImplVulkan_Shutdown();
     ImGui::DestroyContext();
 }
@@ -107,17 +106,15 @@ void Canvas::startImGui() {
     io.DisplaySize = ImVec2(static_cast<float>(size_px_.x), static_cast<float>(size_px_.y));
     stylePanel();
     font_ = std::make_unique<PanelFont>();
-    startBackendNow();
-}
-
-void Canvas::startBackendNow() {
     startBackend();
     Commands commands(context_);
     commands.begin();
-    upload(*commands.buffer());
+    ImGui_ImplVulkan_CreateFontsTexture(*commands.buffer());
+    makeBuffersAhead(*commands.buffer());
     commands.submitAndWait();
     ImGui_ImplVulkan_DestroyFontUploadObjects();
-    is_uploading_ = false;
+    static_assert(IMGUI_VERSION_NUM < 18700, "later backends have the texture's descriptor there");
+    letters_ = static_cast<VkImage>(io.Fonts->TexID);
 }
 
 void Canvas::startBackend() {
@@ -144,38 +141,34 @@ void Canvas::startBackend() {
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     info.CheckVkResultFn = requireSuccess;
     ImGui_ImplVulkan_Init(&info, *render_pass_);
-    has_letters_ = false;
-    is_uploading_ = true;
-    records_ = 0;
 }
 
-void Canvas::upload(vk::CommandBuffer commands) {
-    ImGui_ImplVulkan_CreateFontsTexture(commands);
-    makeBuffersAhead(commands);
-    has_letters_ = true;
-}
-
-void Canvas::setBackendAside() {
-    old_.emplace_back(std::exchange(ImGui::GetIO().BackendRendererUserData, nullptr),
-                      std::move(descriptors_));
-}
-
-void Canvas::dropOld() {
-    ImGuiIO& io = ImGui::GetIO();
-    void* const now = io.BackendRendererUserData;
-    for (const auto& [backend, descriptors] : old_) {
-        io.BackendRendererUserData = backend;
-        ImGui_ImplVulkan_Shutdown();
-    }
-    old_.clear();
-    io.BackendRendererUserData = now;
+void Canvas::makeLetters() {
+    font_->build();
+    ImFontAtlas* const built = font_->built();
+    if (built == nullptr) { return; }
+    unsigned char* texels = nullptr;
+    int width = 0, height = 0;
+    built->GetTexDataAsRGBA32(&texels, &width, &height);
+    const std::size_t bytes = std::size_t{4} * kLettersPx.x * kLettersPx.y;
+    made_letters_ = Buffer(context_, "the panel's letters", bytes, MemoryKind::kUpload);
+    std::copy_n(texels, bytes, made_letters_.mapped<unsigned char>().data());
 }
 
 void Canvas::takeLetters() {
-    setBackendAside();  // frames in flight read the old letters
     font_->take();
-    startBackend();
+    if (made_letters_.bytes() == 0) { return; }
+    uploads_.push_back({std::exchange(made_letters_, {})});
+    ImGui::GetIO().Fonts->SetTexID(letters_);
     draw_list_.clear();  // the letters' places may have changed
+}
+
+void Canvas::recordLetters(Commands& commands) {
+    for (Upload& upload : uploads_) {
+        if (upload.recordings) { continue; }
+        upload.recordings = 0;
+        copyToTexture(commands.buffer(), upload.texels.handle(), letters_, kLettersPx);
+    }
 }
 
 void Canvas::begin(const PanelPointer& pointer, double step_seconds) {
@@ -206,15 +199,7 @@ void Canvas::end() {
 void Canvas::giveUp() {
     if (std::exchange(is_begun_, false)) { ImGui::EndFrame(); }
     is_recorded_ = false;
-    if (!is_uploading_) { return; }
-    // The recording that uploads the letters may have been the one that is discarded.
-    {
-        const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();
-    }
-    setBackendAside();
-    startBackendNow();
-    dropOld();
+    for (Upload& upload : uploads_) { upload.recordings.reset(); }  // it may have been the one that is gone
 }
 
 Canvas::DrawList Canvas::drawList() {
@@ -245,13 +230,10 @@ void Canvas::copyTo(Commands& commands, vk::Image target) const {
 }
 
 void Canvas::record(Commands& commands) {
-    if (is_uploading_ && has_letters_ && ++records_ > kFramesInFlight) {
-        is_uploading_ = false;
-        ImGui_ImplVulkan_DestroyFontUploadObjects();
-        dropOld();
-    }
+    std::erase_if(uploads_,
+                  [](Upload& upload) { return upload.recordings && ++*upload.recordings > kFramesInFlight; });
     if (!is_new_) { return; }
-    if (!has_letters_) { upload(*commands.buffer()); }
+    recordLetters(commands);
     is_recorded_ = true;
     const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
     const vk::raii::CommandBuffer& buffer = commands.buffer();

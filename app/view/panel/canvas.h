@@ -10,7 +10,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -26,14 +25,15 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // Letters wanted before begin() are shown as boxes until takeLetters(), between frames, has brought them.
-    // What earlier frames use is kept until they are done.
+    // Letters wanted before begin() are shown as boxes until makeLetters(), on any thread, and then
+    // takeLetters(), between frames, have brought them.
     [[nodiscard]] PanelFont& font() const { return *font_; }
+    void makeLetters();
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
     void begin(const PanelPointer& pointer, double step_seconds);
     void end();
-    // Discards the widgets and the last recording; may wait for the queue.
+    // Discards the widgets and the last recording.
     void giveUp();
     // Draws, unless the image is up to date; then the canvas may be copied from.
     void record(Commands& commands);
@@ -51,13 +51,8 @@ private:
     void makeImage(vk::Format format);
     void makeRenderPass(vk::Format format);
     void startImGui();
-    // Without letters until upload().
     void startBackend();
-    void upload(vk::CommandBuffer commands);
-    void startBackendNow();
-    void setBackendAside();
-    // What was set aside, once no frame uses it.
-    void dropOld();
+    void recordLetters(Commands& commands);
 
     // ImGui's draw data, byte by byte.
     using DrawList = std::vector<unsigned char>;
@@ -76,10 +71,13 @@ private:
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};
     vk::raii::DescriptorPool descriptors_{nullptr};
-    std::vector<std::pair<void*, vk::raii::DescriptorPool>> old_;  // backends that frames in flight may use
-    // Whether the backend exists; its letters may not be there yet.
-    bool has_letters_ = false, is_uploading_ = false;
-    int records_ = 0;  // since they were uploaded
+    vk::Image letters_;    // the backend's: new ones are copied to it
+    Buffer made_letters_;  // until they are taken
+    struct Upload {
+        Buffer texels;
+        std::optional<int> recordings = {};  // since it was recorded
+    };
+    std::vector<Upload> uploads_;
 };
 
 }  // namespace binosplat

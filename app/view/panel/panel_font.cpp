@@ -29,8 +29,8 @@ constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00
                                           kBox,   kBox,   0x2605, 0x2606, 0};
 // Fonts with all of Unicode take 20 MB.
 constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
-// With these limits the atlas stays below 4096x2048, which every device can sample.
-constexpr std::size_t kMostAdded = 3000, kMostGlyphs = 1500;
+// With these limits they fit into kLettersPx.
+constexpr std::size_t kMostAdded = 1200, kMostGlyphs = 600;
 constexpr std::size_t kMostPictures = 48, kMostWords = 400;
 
 bool isThereFromTheBeginning(ImWchar letter) {
@@ -85,8 +85,14 @@ void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, in
     }
 }
 
+// As large as kLettersPx. ImGui chooses the height by what is in it: a column one texel wide.
+void fixSize(ImFontAtlas& atlas) {
+    atlas.TexDesiredWidth = static_cast<int>(kLettersPx.x);
+    atlas.AddCustomRectRegular(1, static_cast<int>(kLettersPx.y) - 2 * atlas.TexGlyphPadding);
+}
+
 // With the initial letters and those added, each from the first font that has it. False, and an empty atlas,
-// if one is not a font.
+// if one is not a font, or if there are too many.
 bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std::set<ImWchar>& added,
                 std::span<const AtlasPicture> pictures = {}) {
     atlas.Clear();
@@ -106,7 +112,8 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std
         atlas.AddFontFromMemoryTTF(const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), kFontPx,
                                    &config, ranges.data());
     }
-    if (!atlas.Build()) {
+    fixSize(atlas);
+    if (!atlas.Build() || atlas.TexHeight != static_cast<int>(kLettersPx.y)) {
         atlas.Clear();
         return false;
     }
@@ -182,6 +189,7 @@ PanelFont::PanelFont() {
     ImFontConfig font;
     font.SizePixels = kFontPx;
     ImGui::GetIO().Fonts->AddFontDefault(&font);
+    fixSize(*ImGui::GetIO().Fonts);
 }
 
 bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pictures) {

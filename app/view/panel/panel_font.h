@@ -7,6 +7,7 @@
 #include "app/view/scenes/seen_scenes.h"
 
 #include <imgui.h>
+#include <glm/glm.hpp>
 
 #include <filesystem>
 #include <map>
@@ -21,6 +22,8 @@ namespace binosplat {
 // Height of a line. Capitals of DejaVu Sans are 0.63 times as high: half a degree, legible at arm's length in
 // any headset.
 inline constexpr float kFontPx = 24.0f;
+// Of the font's texture, however many letters there are: new ones come into the one that there is.
+inline constexpr glm::uvec2 kLettersPx(2048, 2048);
 
 // Candidate font files, the best first: only BINOSPLAT_FONT if it is set, otherwise the system's fonts.
 std::vector<std::filesystem::path> fontFiles();
@@ -49,7 +52,9 @@ public:
     [[nodiscard]] bool want(std::string_view text, const std::vector<ScenePicture>& pictures = {});
     // Makes a font with everything that was wanted, reading font files for further letters.
     void build();
-    // After build(), between two frames: switches to the new font, which must then be made into a texture.
+    // What it has made; null: nothing better than the current one.
+    [[nodiscard]] ImFontAtlas* built() const { return built_.get(); }
+    // After build(), between two frames: switches to the new font, which must then be copied to the texture.
     void take();
 
     // The pictures of the current font.

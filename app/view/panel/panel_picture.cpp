@@ -42,7 +42,7 @@ void PanelPicture::askFor(FileWorker& files, const ViewSettings& settings) {
     status_.pictures = &canvas_.font().pictures();
     if (canvas_.font().want(namesOn(settings, chooser_, status_), picturesOn(settings, chooser_))) {
         files.read("reading fonts", [this]() -> FileWorker::Done {
-            canvas_.font().build();
+            canvas_.makeLetters();
             return [this] { canvas_.takeLetters(); };
         });
     }
