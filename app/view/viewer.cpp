@@ -28,7 +28,6 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       connection_(instance, context, kPanelPx, [this](const std::string& message) { log_.say(message); }),
       renderer_(instance, context, options_.run, log_, connection_.format()),
       panel_(context, connection_.format()),
-      commands_(context_),
       waiting_(context_),
       probe_(context_),
       copy_(context_),
@@ -104,8 +103,8 @@ bool Viewer::step() {
             connection_.showedFrame();
             break;
         case xr::FrameOutcome::kSkip:
-            drawWindowAlone("The headset is showing something else");
             headset().session.endFrame({});
+            drawWindowAlone("The headset is showing something else");
             break;
     }
     ++log_.frame;

@@ -138,7 +138,6 @@ private:
     double message_seconds_ = 0.0;  // left for the one shown
     bool is_new_view_ = false;      // another scene or another origin of the room, in this frame
     GazeFollower gaze_;
-    Commands commands_;  // for the window alone
     WaitingFrames waiting_;
     SceneProbe probe_;
     ProbesSeen probes_seen_;  // where hands point, and the ground

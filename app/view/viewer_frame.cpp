@@ -51,8 +51,8 @@ void Viewer::drawFrame() {
     settle();
     std::optional<FrameViews> located = locate();
     if (!located) {
-        drawWindowAlone("The headset cannot tell where it is");
         headset().session.endFrame({});
+        drawWindowAlone("The headset cannot tell where it is");
         return;
     }
     renderer_.meetDisplay(headset().session);

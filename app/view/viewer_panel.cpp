@@ -54,11 +54,9 @@ void Viewer::drawWindowAlone(const std::string& why) {
     sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::acquire);
     if (!window_) { return; }
-    waitForQueue();  // the panel's draw buffers are those of the last frame
-    commands_.begin();
-    recordPanel(commands_);
-    commands_.submit(window_->drawn());
-    commands_.wait();
+    scenes_.passOver(true);
+    recordPanel(waiting_.begin());
+    waiting_.submit(window_->drawn());
     onWindow(&MirrorWindow::show);
     sayChange();
 }

@@ -3,6 +3,7 @@
 
 #include "app/view/window/window_surface.h"
 #include "engine/error.h"
+#include "engine/ready.h"
 
 #include <algorithm>
 #include <mutex>
@@ -29,7 +30,8 @@ WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surf
     check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE,
           "{} cannot show on this display", context.deviceName());
     acquired_fence_ = context.device().createFence({});
-    make();
+    window_px_ = window_size_px_();
+    take(make());
 }
 
 WindowPictures::~WindowPictures() {
@@ -39,7 +41,7 @@ WindowPictures::~WindowPictures() {
     } catch (const vk::SystemError&) {}
 }
 
-void WindowPictures::make() {
+WindowPictures::Made WindowPictures::make() const {
     const vk::raii::PhysicalDevice& device = context_.physicalDevice();
     const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
     check(format.has_value(), "this display offers no 8-bit UNORM format");
@@ -51,33 +53,38 @@ void WindowPictures::make() {
     const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
     check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst),
           "this display's images cannot be copied to");
-    window_px_ = window_size_px_();
     const auto extent = windowExtent(able, {window_px_.x, window_px_.y});
-    is_stale_ = !extent;
-    if (!extent) { return; }
-    size_px_ = {extent->width, extent->height};
+    if (!extent) { return {}; }
     const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
     vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format,
                                     format->colorSpace, *extent, 1, vk::ImageUsageFlagBits::eTransferDst);
     info.preTransform = able.currentTransform;
     info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
     info.presentMode = mode;
-    info.oldSwapchain = *swapchain_;
-    vk::raii::SwapchainKHR made(context_.device(), info);
-    if (*swapchain_) { old_.push_back({std::move(swapchain_), std::move(drawn_), kCallsUntilUnused}); }
-    swapchain_ = std::move(made);
-    images_.clear();
-    drawn_.clear();
-    for (const VkImage image : swapchain_.getImages()) {
-        images_.emplace_back(image);
-        drawn_.push_back(context_.device().createSemaphore({}));
+    info.oldSwapchain = *now_.swapchain;
+    Made made{vk::raii::SwapchainKHR(context_.device(), info)};
+    made.size_px = {extent->width, extent->height};
+    for (const VkImage image : made.swapchain.getImages()) {
+        made.images.emplace_back(image);
+        made.drawn.push_back(context_.device().createSemaphore({}));
     }
+    return made;
+}
+
+void WindowPictures::take(Made made) {
+    is_stale_ = !*made.swapchain;
+    if (is_stale_) { return; }
+    old_.emplace_back(std::exchange(now_, std::move(made)), kCallsUntilUnused);
 }
 
 bool WindowPictures::isFree() const { return acquired_fence_.getStatus() == vk::Result::eSuccess; }
 
 void WindowPictures::acquire() {
-    std::erase_if(old_, [](Old& old) { return --old.calls < 0; });
+    std::erase_if(old_, [](auto& old) { return --old.second < 0; });
+    if (making_.valid()) {
+        if (!isReady(making_)) { return; }
+        take(making_.get());
+    }
     // A promised image must be free before the next one is acquired, but the headset does not wait for it.
     if (hold_ == Hold::kPromised && isFree()) { takePromised(); }
     if (hold_ == Hold::kPromised) { return; }
@@ -85,12 +92,18 @@ void WindowPictures::acquire() {
     is_stale_ = is_stale_ || window_px_ != window_size_px_();
     if (is_stale_) {
         hold_ = Hold::kNone;
-        is_remade_ = window_px_ == window_size_px_();
-        make();
+        const glm::uvec2 before_px = std::exchange(window_px_, window_size_px_());
+        is_remade_ = window_px_ == before_px;
+        if (window_px_.x == 0 || window_px_.y == 0) { return; }
+        if (!paced_) {
+            making_ = std::async(std::launch::async, [this] { return make(); });
+            return;
+        }
+        take(make());
     }
     if (is_stale_ || hold_ == Hold::kOurs) { return; }  // minimized; or still held from a dropped frame
     try {
-        const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
+        const auto [result, index] = now_.swapchain.acquireNextImage(0, {}, *acquired_fence_);
         // No picture is free.
         if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }
         index_ = index;
@@ -110,8 +123,8 @@ void WindowPictures::takePromised() {
 void WindowPictures::show() {
     if (hold_ != Hold::kOurs) { return; }
     hold_ = Hold::kNone;
-    const vk::SwapchainKHR swapchain = *swapchain_;
-    const vk::Semaphore drawn = *drawn_[index_];
+    const vk::SwapchainKHR swapchain = *now_.swapchain;
+    const vk::Semaphore drawn = *now_.drawn[index_];
     try {
         const std::lock_guard lock(context_.queueMutex());
         const auto result = context_.queue().presentKHR(vk::PresentInfoKHR(drawn, swapchain, index_));

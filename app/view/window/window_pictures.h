@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 
 #include <functional>
+#include <future>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -22,20 +24,32 @@ public:
     ~WindowPictures();
 
     // Before anything is recorded, once a frame: a picture to draw on, if one is free; first that of a
-    // dropped frame, if there is one.
+    // dropped frame, if there is one. If the window has another size, pictures are made for it, on a thread
+    // unless `paced`; until then none is free.
     void acquire();
     // That picture; null if none was free.
-    [[nodiscard]] vk::Image current() const { return hold_ == Hold::kOurs ? images_[index_] : vk::Image(); }
-    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    [[nodiscard]] vk::Image current() const {
+        return hold_ == Hold::kOurs ? now_.images[index_] : vk::Image();
+    }
+    [[nodiscard]] glm::uvec2 sizePx() const { return now_.size_px; }
     // The semaphore that the submission that draws on it signals; null if none was free.
     [[nodiscard]] vk::Semaphore drawn() const {
-        return hold_ == Hold::kOurs ? *drawn_.at(index_) : vk::Semaphore();
+        return hold_ == Hold::kOurs ? *now_.drawn.at(index_) : vk::Semaphore();
     }
     // Once the submission is under way: shows the picture when it is drawn.
     void show();
 
 private:
-    void make();
+    // A swapchain, and what belongs to it.
+    struct Made {
+        vk::raii::SwapchainKHR swapchain{nullptr};  // null: there is nothing to draw on
+        std::vector<vk::Image> images = {};
+        std::vector<vk::raii::Semaphore> drawn = {};
+        glm::uvec2 size_px{0, 0};
+    };
+    // In place of the one that there is; on any thread, while nobody uses that one.
+    [[nodiscard]] Made make() const;
+    void take(Made made);
     // True if the acquired picture is free to draw on by now.
     [[nodiscard]] bool isFree() const;
     void takePromised();
@@ -44,23 +58,17 @@ private:
     vk::raii::SurfaceKHR surface_;
     std::function<glm::uvec2()> window_size_px_;
     bool paced_;
-    vk::raii::SwapchainKHR swapchain_{nullptr};
+    Made now_;
     vk::raii::Fence acquired_fence_{nullptr};
-    std::vector<vk::Image> images_;
-    std::vector<vk::raii::Semaphore> drawn_;  // by picture: free again when it is
     // What was replaced, and for how many more calls of acquire() frames may use it.
-    struct Old {
-        vk::raii::SwapchainKHR swapchain;
-        std::vector<vk::raii::Semaphore> drawn;
-        int calls;
-    };
-    std::vector<Old> old_;
-    glm::uvec2 size_px_{0, 0}, window_px_{0, 0};  // of the pictures, and of the window when they were made
+    std::vector<std::pair<Made, int>> old_;
+    glm::uvec2 window_px_{0, 0};  // when the pictures were made
     // Of the picture index_: none; promised, while the display may still read it; ours to draw on.
     enum class Hold { kNone, kPromised, kOurs } hold_ = Hold::kNone;
     bool is_stale_ = false;   // the pictures no longer fit the display
     bool is_remade_ = false;  // at the same size: if it is still suboptimal, keep it
     std::uint32_t index_ = 0;
+    std::future<Made> making_;  // last: its thread uses the others
 };
 
 }  // namespace binosplat

@@ -1,6 +1,7 @@
 // Facts about operations in frames that may wait, as counted by two layers (tests/faults/waits.h): the frames
 // of a running viewer do none of them.
-#include "tests/app/view/view_acts.h"
+#include "tests/app/view/view_quiet.h"
+#include "app/view/scenes/kernels_ahead.h"
 #include "tests/engine/stream/moving_frames.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/stream/split_scene.h"
@@ -20,13 +21,6 @@ const std::string kStay =
     "thumbstick 1.91 0 0\n"
     "press left y 2.2 2.25\npress left y 2.5 2.55\ncontroller right 2.7 position 0.2 1.2 -0.35\n"
     "controller right 2.8 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 3.2 lose-session\nat 3.6 exit\n";
-const std::string kWatched =
-    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
-    "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-    "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-    "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
-    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
-
 // In which kernels and frames of another method are made, on a thread.
 constexpr double kMethodSeconds = 5.0;
 
@@ -40,32 +34,6 @@ constexpr Known kKnown[]{
     {0.0, 1.0, "buffer fence-of-this-frame memory swapchain"},
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
-
-// For each frame, what it did that may wait.
-std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
-    std::vector<std::set<std::string>> kinds;
-    std::ifstream file(work.path / "waits.txt");
-    for (std::string line; std::getline(file, line);) {
-        std::istringstream words(line);
-        std::string number, kind, count;
-        words >> number;
-        CHECK(number == std::to_string(kinds.size()));
-        kinds.emplace_back();
-        while (words >> kind >> count) { kinds.back().insert(kind); }
-    }
-    return kinds;
-}
-
-std::string listed(const std::set<std::string>& kinds) { return fmt::format("{}", fmt::join(kinds, " ")); }
-
-// No frame but the first ones waited or made anything.
-void checkQuiet(const Workplace& work, std::size_t first_frames = 45) {
-    const std::vector<std::set<std::string>> waits = waitsOf(work);
-    REQUIRE(waits.size() > first_frames + 45);
-    for (std::size_t frame = first_frames; frame < waits.size(); ++frame) {
-        CHECK_MESSAGE(waits[frame].empty(), frame, ": ", listed(waits[frame]));
-    }
-}
 
 TEST_CASE(
     "no frame of a running viewer waits or makes anything after the first second, until its session is "

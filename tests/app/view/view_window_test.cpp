@@ -2,6 +2,7 @@
 #include "tests/app/view/view_window.h"
 #include "app/view/window/mirror_window.h"
 #include "tests/app/view/unchanged_shaders.h"
+#include "tests/app/view/view_quiet.h"
 
 #include <chrono>
 #include <thread>
@@ -263,6 +264,38 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
         }
         program.checkEnd("stopped before there was a headset");
     }
+}
+
+TEST_CASE_FIXTURE(AtWork,
+                  "no frame waits for the window, resized or not, also where the headset shows nothing") {
+    if (!haveScreen()) { return; }
+    work.write("window.script",
+               "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nat 4 head off\nat 5 head on\n"
+               "at 6 should-render off\nat 7 should-render on\nat 8 exit\n");
+    std::string watched = kWatched;
+    watched.replace(watched.find("DISPLAY="), 8, "DISPLAY=" + desk().screen.name);
+    Program program(work.path, "env " + watched +
+                                   " SIMULATED_OPENXR_CLOCK=real '" BINOSPLAT_PROGRAM
+                                   "' view builtin:slanted-wall --load-first --hide-hands --simulate "
+                                   "window.script --out seen");
+    program.await("shows builtin:slanted-wall");
+    hands("search --sync --onlyvisible --name '^binosplat$' windowsize --sync %1 500 400");
+    program.checkEnd();
+    // What was drawn in the window alone counts as done in the next frame, since the one before was over.
+    std::size_t early = 0;
+    const std::vector<std::set<std::string>> waits = waitsOf(work);
+    for (std::size_t frame = 45; frame < waits.size(); ++frame) {
+        const bool is_early = waits[frame] == std::set<std::string>{"fence-of-last-frame"};
+        early += is_early ? 1 : 0;
+        CHECK_MESSAGE((is_early || waits[frame].empty()), frame, ": ", listed(waits[frame]));
+    }
+    CHECK(early <= 4);  // two each time that the headset shows something again
+    std::size_t drawn = 0, others = 0;
+    for (const std::string& line : linesIn(textIn(work.path / "seen" / "frames.jsonl"))) {
+        ++(contains(line, "projection") ? drawn : others);
+    }
+    CHECK(drawn > 100);
+    CHECK(others > 60);
 }
 
 // The last test: once the test program has a device of its own, it is not forked any more.
