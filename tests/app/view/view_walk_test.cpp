@@ -123,6 +123,41 @@ TEST_CASE_FIXTURE(AtWork, "sticks, pads, hands, viewpoints and buttons move the 
     CHECK(isNear(run.viewPlace(run.frameAt(recentred), kLeft), {-0.0315, 0.0, 0.0}, 1e-5));
 }
 
+TEST_CASE_FIXTURE(AtWork, "a gamepad walks and turns, goes to viewpoints, and hides the panel") {
+    work.go("scene one-splat --out a.ply");
+    work.write("a.viewpoints.json", R"({"viewpoints": [
+        {"name": "door", "eye": [0.5, 0, 0], "look": [0.5, 0, 3], "up": [0, -1, 0]},
+        {"name": "window", "eye": [0, 0, 0.5], "look": [0, 0, 3], "up": [0, -1, 0]}]})");
+    const glm::dvec2 keep = onScenes("Keep this one");
+    Acts acts(kBlind);
+    acts.click(keep)
+        .right(kRightDown)
+        .push("gamepad thumbstick_left", {0.0, 1.0}, 0.2)
+        .wait(0.25)
+        .click(keep);
+    acts.right(kRightDown).push("gamepad thumbstick_right", {1.0, 0.0}, 0.1).wait(0.15).click(keep);
+    acts.press("gamepad shoulder_right").press("gamepad shoulder_right").press("gamepad shoulder_left");
+    const double shown = acts.look();
+    const double hidden = acts.press("gamepad b").look();
+    const double again = acts.press("gamepad menu").look();
+    const ViewRun run = runClean(work, acts,
+                                 "a.ply --load-first --mode mono --hide-hands --eye 0,0,0 --look 0,0,3 --up "
+                                 "0,-1,0" +
+                                     withConfig(work, kScenesPage));
+    for (const double seconds : {shown, hidden, again}) {
+        CHECK(run.panels(run.frameAt(seconds)).empty() == (seconds == hidden));
+    }
+    const std::vector<std::string> went = run.lines(": viewpoint ");
+    INFO(run.outcome.output);
+    REQUIRE(went.size() == 3);
+    const auto kept = keptPlaces(work);
+    REQUIRE(kept.size() == 5);
+    CHECK(kept[3].eye.z - kept[2].eye.z == between(0.2, 0.4));
+    const glm::dvec3 ahead = glm::normalize(kept[4].look - kept[4].eye);
+    CHECK(ahead.x == doctest::Approx(0.5));
+    CHECK(went[2] != went[1]);
+}
+
 TEST_CASE_FIXTURE(AtWork, "the view's edge is dark while a stick moves the wearer, its middle is not") {
     Acts acts("rate 100\nsize 64 64\nframes every 5\nblend-modes opaque alpha-blend\n");
     const auto walk = [&] { return acts.push("left thumbstick", {0.0, 0.2}, 0.3).wait(0.2).look(); };

@@ -138,6 +138,10 @@ bool Attachment::chooseProfiles(Instance& instance, const Automation& automation
     const Profile* const tracker = findProfile("/interaction_profiles/ext/eye_gaze_interaction");
     const bool tracks_eyes = simulation.script.gaze.tracker != EyeTracking::kOff;
     if (tracks_eyes && isSuggested(instance, *tracker)) { chosen[kGaze] = tracker; }
+    const Profile* const gamepad = findProfile("/interaction_profiles/microsoft/xbox_controller");
+    if (simulation.script.gamepad.isThere() && isSuggested(instance, *gamepad)) {
+        chosen[kGamepad] = gamepad;
+    }
     for (std::size_t device = 0; device < kDevices; ++device) {
         const Profile* const wanted = automation.devices[device].profile;
         if (wanted != nullptr) { chosen[device] = isSuggested(instance, *wanted) ? wanted : nullptr; }

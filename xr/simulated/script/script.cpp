@@ -63,8 +63,9 @@ ControllerState findController(const Script::Hand& hand, double time_s) {
 }  // namespace
 
 std::optional<InputKind> kindOfInput(std::string_view name) {
-    for (const auto& [known, kind] : kInputs) {
-        if (known == name) { return kind; }
+    for (const Inputs inputs : {Inputs(kInputs), Inputs(kGamepadInputs)}) {
+        const auto found = std::ranges::find(inputs, name, [](const auto& input) { return input.first; });
+        if (found != inputs.end()) { return found->second; }
     }
     return std::nullopt;
 }
@@ -104,6 +105,7 @@ State Script::at(double time_s) const {
     state.head_turn_known = head_turn_known.at(time_s);
     state.head_place_known = head_place_known.at(time_s) && state.head_turn_known;
     for (ControllerState& other : state.others) { other.tracked = false; }
+    if (gamepad.isThere()) { state.device(kGamepad) = findController(gamepad, time_s); }
     ControllerState& eyes = state.device(kGaze);
     eyes.tracked = gaze.trackedAt(time_s) != GazeTracking::kOff;
     eyes.stage_from_aim = eyes.stage_from_grip = compose(state.stage_from_head, gaze.headFromGaze(time_s));

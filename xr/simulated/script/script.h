@@ -66,8 +66,8 @@ struct State {
     std::array<EyeState, 2> eyes;                          // by Side
     std::array<ControllerState, 2> controllers;            // by Side
     bool head_turn_known = true, head_place_known = true;  // whether the head is tracked
-    // The head's and a gamepad's buttons: at rest, unless a program's own test moves them
-    // (XR_EXT_conformance_automation). The gaze is the aim pose of the last one.
+    // The head's buttons are at rest, unless a program's own test moves them (XR_EXT_conformance_automation).
+    // A gamepad is there if such a test or the script moves it. The gaze is the aim pose of the last one.
     std::array<ControllerState, 3> others;
     bool gaze_is_good = true;  // else it is not to be relied on
     // By InputDevice.
@@ -202,7 +202,7 @@ struct Script {
     Steps<std::string> later_profiles;  // by time; none: still the first
 
     struct Hand {
-        Track<Pose> stage_from_grip;
+        Track<Pose> stage_from_grip{Pose()};
         Pose grip_from_aim;
         Steps<bool> tracked{true};
         std::map<std::string, Track<glm::dvec2>, std::less<>> axes;  // trigger and squeeze use only x
@@ -214,10 +214,12 @@ struct Script {
         std::vector<Press> presses;
         // Each input that moves, and the line that names it first.
         std::map<std::string, std::string> input_places;
+        [[nodiscard]] bool isThere() const { return !input_places.empty(); }  // of a gamepad
     };
     Track<Pose> stage_from_head;
     GazeScript gaze;
     std::array<Hand, 2> hands;
+    Hand gamepad;
     std::array<Steps<Fov>, 2> fovs;
     Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true},
         head_turn_known{true}, head_place_known{true};

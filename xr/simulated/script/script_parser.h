@@ -86,7 +86,8 @@ private:
     void parseGazeTracking(Words& words, double time_s);
 
     // script_presses.cpp
-    std::string takeInputName(Words& words, Script::Hand& hand);
+    // A side, or "gamepad", and then one of its inputs.
+    std::pair<Script::Hand*, std::string> takeInput(Words& words);
     void addPress(Words& words, bool touch_only);
     void parsePress(Words& words);
     void parseTouch(Words& words);

@@ -4,32 +4,33 @@
 
 namespace simulated {
 
-std::string Parser::takeInputName(Words& words, Script::Hand& hand) {
-    const std::string name = words.takeText("the input");
-    if (!kindOfInput(name)) {
-        std::string known;
-        for (const auto& [one, kind] : kInputs) { known += (known.empty() ? "" : ", ") + std::string(one); }
-        words.fail("{} is not an input, must be one of: {}", shown(name), known);
+std::pair<Script::Hand*, std::string> Parser::takeInput(Words& words) {
+    const bool is_gamepad = words.takeIf("gamepad");
+    Script::Hand& hand = is_gamepad ? script_.gamepad : script_.hands[words.takeSide()];
+    std::string name = words.takeText("the input"), known;
+    for (const auto& [one, kind] : is_gamepad ? Inputs(kGamepadInputs) : Inputs(kInputs)) {
+        if (one == name) {
+            hand.input_places.try_emplace(name, words.place());
+            return {&hand, std::move(name)};
+        }
+        known += (known.empty() ? "" : ", ") + std::string(one);
     }
-    hand.input_places.try_emplace(name, words.place());
-    return name;
+    words.fail("{} is not an input, must be one of: {}", shown(name), known);
 }
 
 void Parser::addPress(Words& words, bool touch_only) {
-    Script::Hand& hand = script_.hands[words.takeSide()];
-    std::string input = takeInputName(words, hand);
+    auto [hand, input] = takeInput(words);
     const double from_s = words.takeTime("the time at which it begins");
     const double to_s = words.takeTime("the time at which it ends");
     if (from_s >= to_s) { words.fail("it lasts from {} to {}, must end after it begins", from_s, to_s); }
-    hand.presses.push_back({std::move(input), from_s, to_s, touch_only});
+    hand->presses.push_back({std::move(input), from_s, to_s, touch_only});
 }
 
 void Parser::parsePress(Words& words) { addPress(words, false); }
 void Parser::parseTouch(Words& words) { addPress(words, true); }
 
 void Parser::parseAxis(Words& words) {
-    Script::Hand& hand = script_.hands[words.takeSide()];
-    const std::string input = takeInputName(words, hand);
+    const auto [hand, input] = takeInput(words);
     const InputKind kind = *kindOfInput(input);
     if (kind == InputKind::kButton) {
         words.fail(
@@ -45,7 +46,7 @@ void Parser::parseAxis(Words& words) {
     } else {
         value.x = words.takeNumber("the value", 0.0, 1.0);
     }
-    addKey(words, hand.axes[input], time_s, value);
+    addKey(words, hand->axes[input], time_s, value);
 }
 
 }  // namespace simulated
