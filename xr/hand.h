@@ -18,6 +18,7 @@ struct Hand {
     bool menu = false;
     bool play = false;           // the lower button
     bool stick_presses = false;  // the stick is pressed in; never a pad
+    bool is_bare = false;        // nothing is held: a pinch clicks, and there are no buttons
 };
 
 // Tells whether a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not

@@ -102,7 +102,10 @@ void Input::readHand(std::size_t h, Hand& hand) {
     hand.aim = actions_.locate(aim_, path, aim_spaces_[h], Actions::kKnown);
     hand.grip = actions_.locate(grip_, path, grip_spaces_[h], Actions::kKnown);
     hand.joints = tracking_.locate(static_cast<int>(h));
-    hand.clicks = clicks_[h].update(actions_.readNumber(trigger_, path));
+    const std::optional<double> trigger = actions_.readNumber(trigger_, path);
+    hand.clicks = clicks_[h].update(trigger);
+    // Every controller has a menu button, see bindings.cpp.
+    hand.is_bare = trigger && !actions_.readButton(menu_, path);
     hand.grabs = grabs_[h].update(actions_.readNumber(squeeze_, path));
     // A pad that is touched but not pressed is at rest.
     if (actions_.readButton(stick_click_, path).value_or(true)) {

@@ -64,6 +64,7 @@ void Viewer::drawFrame() {
     const double step_seconds = headset().session.stepSeconds();
     WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(),
                      step_seconds, probes_seen_.hands};
+    wearer.measures = ruler_.isOpen();
     wearer.ground_scene = std::move(probes_seen_.ground);
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->floor) {
         wearer.scene_floor = SceneFloor{scene->up, *scene->floor};

@@ -10,7 +10,6 @@ namespace binosplat {
 namespace {
 
 constexpr double kWalkMetresPerSecond = 1.5, kRiseMetresPerSecond = 0.8;
-constexpr double kTurnRadians = 0.5235987755982988;  // 30 degrees
 constexpr double kTurnRadiansPerSecond = 1.5707963267948966;
 
 // Thumbs that push forwards also push aside a little: only the larger part counts.

@@ -10,6 +10,8 @@ namespace binosplat {
 // Movements within the dead zone are a trembling thumb.
 inline constexpr double kStickPushed = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
 
+inline constexpr double kTurnRadians = 0.5235987755982988;  // 30 degrees
+
 // The left stick walks along the head's direction, unless it teleports; the right one rises and sinks.
 class Walk : public WearerTool {
 public:

@@ -12,6 +12,8 @@ namespace binosplat {
 namespace {
 
 constexpr double kThrowMetresPerSecond = 7.0, kFallMetresPerSecond2 = 9.8;
+// Hands that aim move less than that.
+constexpr double kPullMetres = 0.12;
 constexpr double kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
 
 bool isBlocked(const PathSeen& path, const std::vector<glm::dvec3>& arc) {
@@ -43,22 +45,38 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
     return aim;
 }
 
+bool Teleport::aims(int h, const WearerNow& now, const PanelInRoom& panel, bool is_chosen) const {
+    const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+    if (!hand.aim || now.measures || !(is_chosen || hand.is_bare)) { return false; }
+    // While aiming, the ray may pass over the panel.
+    const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
+    const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickPushed);
+    return pushed || panel.clicksElsewhere(h);
+}
+
+bool Teleport::pullsAside(const WearerNow& now, ViewState& state) {
+    const auto at = static_cast<std::size_t>(*aiming_);
+    const glm::dvec3 right = glm::cross(glm::dvec3(0.0, 1.0, 0.0), levelAhead(now.room_from_head));
+    const double aside_m = glm::dot(now.hands[at].aim->position - pinched_at_, right);
+    if (!now.hands[at].is_bare || std::abs(aside_m) < kPullMetres) { return false; }
+    state.place(
+        turnedBy(state.sceneFromRoom(), std::copysign(kTurnRadians, -aside_m), now.room_from_head.position));
+    return has_turned_[at] = true;
+}
+
 void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
     const TeleportAim before = std::exchange(aim_, {});
-    if (!state.settings().teleport) {
-        aiming_.reset();
-        return;
+    const bool is_chosen = state.settings().teleport;
+    std::array<bool, 2> aim{};
+    for (const int h : {kRight, kLeft}) {
+        const auto at = static_cast<std::size_t>(h);
+        aim[at] = aims(h, now, panel, is_chosen);
+        has_turned_[at] = has_turned_[at] && aim[at];
     }
-    const auto aims = [&](int h) {
-        const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
-        // While aiming, the ray may pass over the panel.
-        const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
-        const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickPushed);
-        return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
-    };
-    if (aiming_ && !aims(*aiming_)) {
+    if (aiming_ && !aim[static_cast<std::size_t>(*aiming_)]) {
+        const xr::Hand& hand = now.hands[static_cast<std::size_t>(*aiming_)];
         // A hand that lost tracking did not let go.
-        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && before.target && !before.arc.is_blocked) {
+        if (hand.aim && !now.measures && before.target && !before.arc.is_blocked) {
             glm::dvec3 step_m = *before.target - now.room_from_head.position;
             step_m.y = 0.0;
             state.place(movedBy(state.sceneFromRoom(), step_m));
@@ -66,9 +84,16 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
         aiming_.reset();
     }
     for (const int h : {kRight, kLeft}) {
-        if (!aiming_ && aims(h)) { aiming_ = h; }
+        const auto at = static_cast<std::size_t>(h);
+        if (aiming_ || !aim[at] || has_turned_[at]) { continue; }
+        aiming_ = h;
+        pinched_at_ = now.hands[at].aim->position;
     }
     if (!aiming_) { return; }
+    if (pullsAside(now, state)) {
+        aiming_.reset();
+        return;
+    }
     const auto hand = static_cast<std::size_t>(*aiming_);
     aim_ = aimTeleport(*now.hands[hand].aim, now.floor_m.value_or(kUsualFloorMetres));
     aim_.arc.is_blocked = isBlocked(now.paths[hand], aim_.arc.points);

@@ -15,7 +15,9 @@ struct TeleportAim {
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 
 // If chosen: pushing the left stick forwards, or pulling a trigger away from the panel, aims at the floor;
-// letting go moves the wearer there, unless the scene is in the way.
+// letting go moves the wearer there, unless the scene is in the way. Bare hands, which have no stick, always
+// do so by pinching; a pinch that is pulled aside turns the wearer instead, so that the scene follows the
+// hand.
 class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
@@ -28,8 +30,14 @@ public:
     }
 
 private:
+    [[nodiscard]] bool aims(int h, const WearerNow& now, const PanelInRoom& panel, bool is_chosen) const;
+    // True if the pinch has turned the wearer.
+    [[nodiscard]] bool pullsAside(const WearerNow& now, ViewState& state);
+
     std::optional<int> aiming_;
     TeleportAim aim_;
+    glm::dvec3 pinched_at_{0.0};
+    std::array<bool, 2> has_turned_{};  // in this pinch
 };
 
 }  // namespace binosplat

@@ -36,6 +36,7 @@ struct WearerNow {
     std::vector<glm::dvec3> ground_scene{};
     // If it is known; earlier tools may have moved the room in this frame.
     std::optional<SceneFloor> scene_floor{};
+    bool measures = false;  // clicks away from the panel are ends of a distance
 };
 
 // A widget of a tool: a choice of two after `words`, or a check box if there are no names.

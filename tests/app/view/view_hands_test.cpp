@@ -340,4 +340,27 @@ TEST_CASE_FIXTURE(AtWork, "controllers are drawn where grips are; one teleports 
     CHECK(glm::distance(kept[1].eye - kept[0].eye, {second.x, 0.0, -second.z}) < 1e-4);
 }
 
+TEST_CASE_FIXTURE(AtWork,
+                  "bare hands walk and turn without a page: a pinch teleports or, pulled aside, turns") {
+    const glm::dvec2 keep = onScenes("Keep this one");
+    const std::string pinch = "right aim_activate_ext";
+    Acts acts(kBlind + "extension XR_EXT_hand_tracking off\nprofile ext/hand_interaction_ext\n");
+    acts.click(keep, pinch).right(lookingAt({0.2, 0.9, -0.35}, {0.2, 0.3, -0.75})).wait(0.05);
+    const double throws = acts.hold(pinch, 0.2).wait(0.1).look();
+    acts.wait(0.1).click(keep, pinch);
+    acts.right(lookingAt({0.2, 0.9, -0.35}, {0.2, 0.3, -0.75})).wait(0.05).hold(pinch, 0.4).wait(0.1);
+    acts.right(lookingAt({0.5, 0.9, -0.35}, {0.5, 0.3, -0.75}), 0.1).wait(0.05);
+    const double pulled = acts.look();
+    acts.wait(0.2).click(keep, pinch).wait(0.1);
+    const ViewRun run = runClean(work, acts, kScene + kAtWall + withConfig(work, kScenesPage));
+    CHECK(these(countSeen(run, throws, kTarget), countSeen(run, pulled, kTarget)) == these(1, 0));
+    const auto kept = keptPlaces(work);
+    REQUIRE(kept.size() == 3);
+    // To where the arc met the floor, ahead; then by 30 degrees to the left, on the spot.
+    CHECK(kept[1].eye.x - kept[0].eye.x == doctest::Approx(0.2));
+    CHECK(kept[1].eye.z - kept[0].eye.z > 0.4);
+    CHECK(glm::distance(kept[2].eye, kept[1].eye) < 1e-6);
+    CHECK(glm::normalize(kept[2].look - kept[2].eye).x == doctest::Approx(-0.5));
+}
+
 }  // SUITE(view_hands)
