@@ -147,8 +147,10 @@ void Session::pollEvents() {
                 break;
             case XR_TYPE_EVENT_DATA_EVENTS_LOST: {
                 // Asks again for everything that lost events may have reported and that can be asked for.
+                // Whether somebody wears the headset cannot: from now on, movement shows it.
                 for (const std::uint32_t eye : {0u, 1u}) { hidden_meshes_.read(eye); }
                 told_for_ = 0;
+                wearing_.forgetPresence();
                 const std::uint32_t count =
                     reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount;
                 instance_.troubles().add(

@@ -15,6 +15,8 @@ public:
 
     // What the runtime says, if it can tell.
     void hear(bool is_present) { is_present_ = is_present; }
+    // What it said may have changed unheard.
+    void forgetPresence() { is_present_.reset(); }
     // The room's origin has moved.
     void forgetPlace() { first_.reset(); }
     [[nodiscard]] bool hasBegun() const { return has_begun_; }

@@ -5,7 +5,8 @@
 // does not have the function; "crash": it ends the program. xrCreateInstance:hang never returns.
 // BINOSPLAT_XR_EARLY=METRES: a frame's first request for its eyes gets a worse prediction, too high by this
 // much; later requests get the right one.
-// BINOSPLAT_XR_LOSE=TYPE: events of this XrStructureType are lost, and the runtime reports the loss of one.
+// BINOSPLAT_XR_LOSE=TYPE[:N]: events of this XrStructureType are lost, once N others came, and the runtime
+// reports the loss of one.
 // For BINOSPLAT_FAULT_WAITS (waits.h), it tells when a frame ends and what the runtime does itself.
 #include <vulkan/vulkan.h>
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -118,8 +119,11 @@ XRAPI_ATTR XrResult XRAPI_CALL beginFrame(XrSession session, const XrFrameBeginI
 PFN_xrPollEvent g_poll_event = nullptr;
 
 XRAPI_ATTR XrResult XRAPI_CALL pollEvent(XrInstance instance, XrEventDataBuffer* event) {
+    const char* const lose = std::getenv("BINOSPLAT_XR_LOSE");
+    const char* const after = std::strchr(lose, ':');
+    static std::atomic<int> left{after != nullptr ? std::atoi(after + 1) : 0};
     const XrResult result = g_poll_event(instance, event);
-    if (result != XR_SUCCESS || event->type != std::atoi(std::getenv("BINOSPLAT_XR_LOSE"))) { return result; }
+    if (result != XR_SUCCESS || event->type != std::atoi(lose) || left-- > 0) { return result; }
     XrEventDataEventsLost lost{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, 1};
     std::memcpy(event, &lost, sizeof lost);
     return result;

@@ -33,6 +33,9 @@ TEST_CASE("what the runtime says counts, once the program has the input") {
     Wearing wearing;
     wearing.hear(false);
     CHECK_FALSE(beginsAfter(wearing, kHead).has_value());
+    Wearing unsure = wearing;
+    unsure.forgetPresence();
+    CHECK(beginsAfter(unsure, kHead).value_or(9.0) < 1.0);
     wearing.hear(true);
     CHECK(beginsAfter(wearing, kStill, 2.0).value_or(0.0) == doctest::Approx(2.0).epsilon(0.01));
 }

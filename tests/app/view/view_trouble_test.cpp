@@ -302,19 +302,30 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
 TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for") {
     Acts acts("rate 50\nsize 200 200\nframes none\nvisibility-mask on\n");
     acts.wait(0.2).at("eye left angles -45 60 45 -45").wait(0.3);
-    const auto lines = [&](const std::string& lost) {
+    const auto lines = [&](const std::string& lost, const std::string& script, const std::string& words) {
         const ViewRun run =
-            runView(work, "run", acts, kWall + " --hide-panel --mode shared", withXrFaults(lost));
+            runView(work, "run", script, kWall + " --hide-panel --mode shared", withXrFaults(lost));
         INFO(run.outcome.output << run.outcome.errors);
         CHECK(run.outcome.exit_code == 0);
         CHECK(run.lines("the OpenXR runtime lost ").size() == (lost.empty() ? 0 : 1));
-        return run.lines(": the lenses hide ");
+        return run.lines(words);
     };
+    const std::string hides = ": the lenses hide ";
     // The mask for the new angles, announced by an event (XrEventDataVisibilityMaskChangedKHR).
-    const std::vector<std::string> told = lines("");
+    const std::vector<std::string> told = lines("", acts, hides);
     // For the old angles, for the new ones with the old mask, and with their own mask.
     CHECK(told.size() == 3);
-    CHECK(lines("BINOSPLAT_XR_LOSE=1000031001") == told);
+    CHECK(lines("BINOSPLAT_XR_LOSE=1000031001", acts, hides) == told);
+    // Another rate, which the frames' periods alone would not show: it is asked for once more.
+    CHECK(lines("BINOSPLAT_XR_LOSE=1000101000 BINOSPLAT_XR_FAULT=xrGetDisplayRefreshRateFB:-2:1:1",
+                kSmall + "at 0.3 rate 90.5\nat 0.6 exit\n", "going on without the display's refresh rate")
+              .size() == 1);
+    // That somebody puts the headset on, which then shows in its movement.
+    CHECK(lines("BINOSPLAT_XR_LOSE=1000470000:1",
+                kSmall + "head 0 position 0 0.8 0\nhead 0.5 position 0 0.8 0\nhead 0.7 position 1 1.6 0 turn "
+                         "40 0\nat 0 present off\nat 0.6 present on\nat 2 exit\n",
+                "the room now begins where the wearer stands")
+              .size() == 2);
 }
 
 TEST_CASE_FIXTURE(AtWork, "depth is not submitted where the config or the panel says so") {
