@@ -131,6 +131,14 @@ TEST_CASE_FIXTURE(AtWork, "with a load bound and resolution fall at once, and ar
     CHECK(contains(changes.back(), "temporal at 100 %, errors within 30 dB; better for the same time"));
     CHECK(frameOf(changes.back()) <= kGoes + kSecond);
     CHECK(run.width(run.frames.size() - 4) == 64);
+    // And from the first second on, if that is how it begins.
+    const ViewRun loaded = runClean(work, "rate 30\nsize 64 64\nframes none\n",
+                                    "builtin:slanted-wall --axes view --frames 40" + kNothingElse +
+                                        withConfig(work, "[view]\nquality = \"balanced\"\n"),
+                                    withFaults("BINOSPLAT_FAULT_LOAD=0:60"));
+    REQUIRE_FALSE(loaded.lines(" dB; ").empty());
+    CHECK(frameOf(loaded.lines(" dB; ").front()) <= 10);
+    CHECK(loaded.width(20) < 64);
 }
 
 TEST_CASE("displays missed though frames seem to fit lower the resolution until they are met") {

@@ -20,6 +20,8 @@ TEST_CASE("small is what a headset's processor holds, or a GPU within a processo
     CHECK(defaultsOf("NVIDIA GeForce GTX 1060", false, 6 * kGiB) == DeviceDefaults{});
     CHECK(defaultsOf("AMD Custom GPU 0405 (RADV VANGOGH)", true, 8 * kGiB) == DeviceDefaults{});
     CHECK(describeDefaults({}).empty());
+    CHECK(these(DeviceDefaults{}.quality, ViewSettings{}.quality) ==
+          these(Quality::kBalanced, Quality::kBalanced));
 }
 
 }  // SUITE(device_defaults)
