@@ -3,6 +3,7 @@
 
 #include "app/view/files/picture_writer.h"
 #include "app/view/headset/headset_connection.h"
+#include "app/view/headset/taken_layers.h"
 #include "app/view/headset/waiting_frames.h"
 #include "app/view/panel/first_steps.h"
 #include "app/view/panel/panel.h"
@@ -72,11 +73,13 @@ private:
     // Reports errors of a scene that loads while it is shown, and once that everything in view is loaded.
     void sayLive(LoadedScene& scene);
     void showFrame(const FrameViews& views);
-    // Without hands and rays, or without depth, if the runtime refuses these.
+    // Without what the runtime refuses, except the eyes' pictures.
     void submitFrame(const FrameViews& views);
+    void goOnWith(const LayersWanted& taken, const std::vector<const char*>& things,
+                  const std::string& refusal);
     // Errors of the window only close the window.
     void onWindow(void (MirrorWindow::*act)());
-    void addEyes(xr::Layers& layers, const FrameViews& views) const;
+    void addEyes(xr::Layers& layers, const FrameViews& views, bool see_through) const;
     // Lays out the widgets; acquires an image for the panel if it is `hung` and has changed.
     void layOutPanel(bool hung, double step_seconds);
     void takeWindowInput(double step_seconds);

@@ -293,50 +293,67 @@ void Viewer::showFrame(const FrameViews& views) {
     if (headset().inset) { headset().inset_images->release(); }
     panel_.release(headset());
     headset().things.release();
-    headset().session.seeThrough(renderer_.seesThrough(state_.settings()));
     submitFrame(views);
 }
 
 void Viewer::submitFrame(const FrameViews& views) {
     std::vector<const char*> things;
-    const auto submit = [&](std::size_t most_things) {
-        xr::Layers layers(headset().session, most_things);
-        addEyes(layers, views);
+    std::string refusal;
+    const bool has_room = renderer_.seesThrough(state_.settings());
+    const auto isTaken = [&](const LayersWanted& wanted) {
+        headset().session.seeThrough(has_room && wanted.room);
+        xr::Layers layers(headset().session, wanted.most_things);
+        addEyes(layers, views, has_room && wanted.room);
         headset().things.addBehindPanel(layers);
-        if (panel_hangs_) {
+        if (panel_hangs_ && wanted.panel) {
             layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(),
                             headset().panel_images);
         }
         headset().things.addBeforePanel(layers);
         things = layers.quadNames();
-        headset().session.endFrame(layers.list());
-    };
-    std::string refusal;
-    const auto isTaken = [&](std::size_t most_things) {
         try {
-            submit(most_things);
-            return true;
-        } catch (const Error& error) { refusal = error.what(); }
-        return false;
+            headset().session.endFrame(layers.list());
+        } catch (const Error& error) {
+            refusal = error.what();
+            return false;
+        }
+        return true;
     };
-    if (isTaken(SIZE_MAX)) { return; }
-    // The runtime does not say which layer it refuses, so the things are left out one after another until it
-    // accepts the rest.
-    for (std::size_t most = things.size(); most-- > 0;) {
-        if (!isTaken(most)) { continue; }
-        instance_.troubles().add(fmt::format(
-            "{}; going on without hands, rays and the vignette: it refuses {}", refusal, things[most]));
-        headset().things.giveUp();
-        return;
+    if (isTaken({})) { return; }
+    std::optional<LayersWanted> taken = findTaken(things.size(), panel_hangs_, has_room, isTaken);
+    if (!taken && renderer_.dropDepth(headset())) {
+        log_.say("the runtime refuses depth; going on without depth");
+        if (isTaken({})) { return; }
+        taken = findTaken(things.size(), panel_hangs_, has_room, isTaken);
     }
-    if (renderer_.dropDepth(headset())) { log_.say("the runtime refuses depth; going on without depth"); }
-    if (!isTaken(SIZE_MAX)) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures{}", refusal,
-                                                     panel_hangs_ ? ", or the panel" : ""));
+    if (!taken) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures", refusal));
     }
+    goOnWith(*taken, things, refusal);
 }
 
-void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
+void Viewer::goOnWith(const LayersWanted& taken, const std::vector<const char*>& things,
+                      const std::string& refusal) {
+    const auto say = [&](const std::string& lacks, const std::string& what) {
+        instance_.troubles().add(fmt::format("{}; going on without {}: it refuses {}", refusal, lacks, what));
+    };
+    if (taken.most_things < things.size()) {
+        say("hands, rays and the vignette", things[taken.most_things]);
+        headset().things.giveUp();
+    }
+    ViewSettings less = state_.settings();
+    if (panel_hangs_ && !taken.panel) {
+        say("the panel", "it");
+        less.panel = false;
+    }
+    if (less.passthrough && !taken.room) {
+        say("the room behind the scene", "it");
+        less.passthrough = false;
+    }
+    state_.set(less);
+}
+
+void Viewer::addEyes(xr::Layers& layers, const FrameViews& views, bool see_through) const {
     const auto layerEye = [&](const EyeImages& images, const std::array<xr::EyeView, 2>& eyes, int shown_to) {
         // If both eyes share a picture, both use the pose and angles of its eye.
         const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
@@ -346,7 +363,6 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const EyeImages& images = *headset().images;
     const xr::LayerEye left = layerEye(images, views.pictures, kLeft),
                        right = layerEye(images, views.pictures, kRight);
-    const bool see_through = renderer_.seesThrough(state_.settings());
     if (!headset().inset) { return layers.addEyes({left, right}, see_through); }
     const EyeImages& insets = *headset().inset_images;
     layers.addEyesAndInsets(

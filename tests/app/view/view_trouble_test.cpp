@@ -188,6 +188,35 @@ TEST_CASE_FIXTURE(AtWork, "what only decorates and fails is said once, and a los
                       ": the room now begins where the wearer stands"});
 }
 
+TEST_CASE_FIXTURE(AtWork,
+                  "a panel or a room that the runtime refuses is left out, only eyes end the program") {
+    const auto runRefusing = [&](int times) {
+        return runView(work, "refusing", kSmall + "passthrough on\nat 0.4 exit\n",
+                       kOneEye + " --hide-hands" + withConfig(work, "[view]\npassthrough = true\n"),
+                       withXrFaults(fmt::format("BINOSPLAT_XR_FAULT=xrEndFrame:-2:{}:10", times)));
+    };
+    const std::string refused = "xrEndFrame failed: XR_ERROR_RUNTIME_FAILURE; going on without ",
+                      panel = refused + "the panel: it refuses it",
+                      room = refused + "the room behind the scene: it refuses it";
+    // As often as it takes: with everything, with fewer rays, without any, without the panel, without the
+    // room.
+    for (const int times : {3, 4, 5}) {
+        CAPTURE(times);
+        const ViewRun run = runRefusing(times);
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(run.outcome.exit_code == 0);
+        const std::size_t last = run.frames.size() - 4;
+        const bool has_panel = times == 4, has_room = times == 3;
+        CHECK(these(run.says(panel), run.says(room)) == these(!has_panel, !has_room));
+        CHECK(these(run.panels(last).empty(), run.layers(last, "passthrough").empty()) ==
+              these(!has_panel, !has_room));
+        CHECK(run.layers(last, "projection").size() == 1);
+    }
+    const ViewRun run = runRefusing(1000);
+    CHECK(run.outcome.exit_code == 3);
+    CHECK(contains(run.outcome.errors, "it refuses the eyes' pictures\n"));
+}
+
 TEST_CASE_FIXTURE(AtWork, "a lost runtime gives one line and code 3; without a stage LOCAL_FLOOR counts") {
     const std::string floor = "stage off\nhead 0 position 0.2 1.45 0.1\n";
     for (const char* time : {"0", "0.02", "0.2"}) {
