@@ -218,13 +218,23 @@ TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene wh
         CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags").empty() == !sees);
         CHECK(isCorner(run, seconds, sees ? kGreenRoom : kRed));
     }
-    // A headset that blends pictures with the room by alpha does so.
+    // A headset that blends pictures with the room by alpha does so: what a sphere holds of a scene stands in
+    // one's room.
+    work.go("convert builtin:slanted-wall sphere.ply --crop 0,0,4,0.5");
     const ViewRun alpha = runClean(
         work,
-        "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
-        kAfar + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
+        "rate 50\nsize 128 128\nframes every 5\npassthrough on\nroom-colour 0.2 0.9 0.4\nblend-modes opaque "
+        "alpha-blend\nat 0.3 exit\n",
+        "sphere.ply --load-first --hide-hands --hide-panel --mode mono --eye 0,0,2.5 --look 0,0,4 --up "
+        "0,-1,0" +
+            withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(alpha.frames.at(10).at("blend_mode") == "ALPHA_BLEND");
     CHECK(alpha.layers(10, "passthrough").empty());
+    const auto isRoom = [&](glm::uvec2 at) {
+        const auto [red, green, blue] = colourAt(alpha.eye(10, kLeft), at);
+        return glm::distance(glm::vec3(red, green, blue), kGreenRoom) < 0.02f;
+    };
+    CHECK(these(isRoom({1, 1}), isRoom({64, 1}), isRoom({64, 64})) == these(true, true, false));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no end") {
