@@ -57,6 +57,33 @@ glm::dvec3 SceneRenderer::backgroundOf(const ViewSettings& settings, const glm::
     return settings.backdrop == Backdrop::kAsSet ? set : colourOf(settings.backdrop);
 }
 
+std::vector<glm::uvec2> SceneRenderer::sizesToCome(const ViewSettings& settings) const {
+    std::vector<glm::uvec2> sizes_px;
+    if (settings.quality == Quality::kOff) { return sizes_px; }
+    for (double tenths = 10.0; tenths >= 10.0 * leastScale(settings.quality) - 1e-6; --tenths) {
+        sizes_px.push_back(sizePx(governedScale(settings.resolution_scale, tenths)));
+    }
+    return sizes_px;
+}
+
+std::array<std::span<const std::uint8_t>, 2> SceneRenderer::hiddenTiles(ConnectedHeadset& headset,
+                                                                        const ViewSettings& settings,
+                                                                        const FrameViews& views,
+                                                                        glm::uvec2 size_px) const {
+    // If both eyes share a picture, it is seen through either lens.
+    if (settings.showsOneEye() || !settings.visibility_mask) { return {}; }
+    return headset.lens_mask.update(headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(),
+                                    views.eyes, size_px, sizesToCome(settings));
+}
+
+bool SceneRenderer::knowsLens(ConnectedHeadset& headset, const ViewSettings& settings,
+                              const FrameViews& views) const {
+    if (settings.showsOneEye() || !settings.visibility_mask) { return true; }
+    const glm::uvec2 size_px = sizePx(settings);
+    static_cast<void>(hiddenTiles(headset, settings, views, size_px));
+    return headset.lens_mask.knows(size_px);
+}
+
 FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings,
                                              double scale, const FrameViews& views) {
     StereoOptions stereo = settings.stereo;
@@ -78,12 +105,8 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.waits_for_lists = false;
     frame.most_px = sizes_.images_px;
     frame.background = backgroundOf(settings, frame.background);
-    // If both eyes share a picture, it is seen through either lens.
-    if (!settings.showsOneEye() && settings.visibility_mask) {
-        frame.hidden_tiles = headset.lens_mask.update(
-            headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes, sizes_.view_px);
-        sayHidden(frame.hidden_tiles);
-    }
+    frame.hidden_tiles = hiddenTiles(headset, settings, views, sizes_.view_px);
+    sayHidden(frame.hidden_tiles);
     return frame;
 }
 

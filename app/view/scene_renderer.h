@@ -62,6 +62,9 @@ public:
     [[nodiscard]] FramesWanted framesWanted(ConnectedHeadset& headset, const Similarity& scene_from_room,
                                             const ViewSettings& settings, FrameViews views,
                                             const Similarity& there_from_here);
+    // True once it is known what the lenses hide of pictures for these settings, which it finds out.
+    [[nodiscard]] bool knowsLens(ConnectedHeadset& headset, const ViewSettings& settings,
+                                 const FrameViews& views) const;
     // Aims, and prepares what render() will show of the scene that is drawn. Throws Error if memory is short;
     // then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room,
@@ -137,6 +140,12 @@ private:
                    : std::span(kEyes);
     }
     [[nodiscard]] glm::dvec3 backgroundOf(const ViewSettings& settings, const glm::dvec3& set) const;
+    [[nodiscard]] std::array<std::span<const std::uint8_t>, 2> hiddenTiles(ConnectedHeadset& headset,
+                                                                           const ViewSettings& settings,
+                                                                           const FrameViews& views,
+                                                                           glm::uvec2 size_px) const;
+    // All that the governor may choose for what an eye sees.
+    [[nodiscard]] std::vector<glm::uvec2> sizesToCome(const ViewSettings& settings) const;
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings,
                                                 double scale, const FrameViews& views);
     // Presents the eyes of `frame` into `images`.

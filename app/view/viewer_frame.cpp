@@ -175,7 +175,8 @@ bool Viewer::prepareScene(FrameViews& views) {
         renderer_.govern(headset(), drawn_, views, scenes_, window_.get());
         if (scenes_.get() != nullptr) {
             const Similarity drawn = scenes_.drawnFrom(state_.sceneFromRoom());
-            if (const std::optional<Similarity> there = scenes_.toRemake()) {
+            const std::optional<Similarity> there = scenes_.toRemake();
+            if (there && renderer_.knowsLens(headset(), state_.settings(), views)) {
                 scenes_.remakeFrames(
                     renderer_.framesWanted(headset(), drawn, state_.settings(), views, *there));
             }

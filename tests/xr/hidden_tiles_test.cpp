@@ -3,6 +3,9 @@
 #include "app/view/headset/lens_mask.h"
 #include "tests/suite.h"
 
+#include <mutex>
+#include <thread>
+
 SUITE(hidden_tiles) {
 
 using xr::findHiddenTiles;
@@ -31,14 +34,15 @@ struct MaskedView {
             views[e].fov = {left_rad, 0.7f, 0.7f, -0.7f};
         }
     }
-    Tiles hidden(LensMask& mask, int version) const {
-        const std::span<const std::uint8_t> tiles = mask.update(meshes, version, views, {64, 64})[0];
+    Tiles hidden(LensMask& mask, int version, glm::uvec2 size_px = {64, 64},
+                 std::vector<glm::uvec2> others = {}) const {
+        const std::span<const std::uint8_t> tiles = mask.update(meshes, version, views, size_px, others)[0];
         return {tiles.begin(), tiles.end()};
     }
     // From a new mask.
-    [[nodiscard]] Tiles hidden() const {
+    [[nodiscard]] Tiles hidden(glm::uvec2 size_px = {64, 64}) const {
         LensMask mask;
-        return hidden(mask, 0);
+        return hidden(mask, 0, size_px);
     }
 };
 
@@ -128,6 +132,34 @@ TEST_CASE("angles and meshes that shiver make no mask anew, others do") {
     const Tiles before = MaskedView(-0.4f, left_rad).hidden(of_angle, 1);
     CHECK(MaskedView(-0.4f, left_rad + 5e-5f).hidden(of_angle, 1) == before);
     CHECK(MaskedView(-0.4f, left_rad + 5e-4f).hidden(of_angle, 1) == byAngle(left_rad + 5e-4f));
+}
+
+TEST_CASE(
+    "masks of other sizes are found on a thread, each once, and until then hide no more than they will") {
+    const std::thread::id here = std::this_thread::get_id();
+    std::mutex mutex;
+    std::vector<std::pair<unsigned, bool>> found;
+    LensMask mask([&](const LensShape& lens, glm::uvec2 size_px) {
+        const std::lock_guard lock(mutex);
+        found.emplace_back(size_px.x, std::this_thread::get_id() == here);
+        return findHidden(lens, size_px);
+    });
+    const MaskedView view(-0.2f, -0.7f);
+    const glm::uvec2 large(256, 256), small(112, 112);
+    CHECK(view.hidden(mask, 1, large, {large, small}) == view.hidden(large));
+    mask.finish();
+    for (int steps = 0; steps < 3; ++steps) {
+        CHECK(view.hidden(mask, 1, small, {large, small}) == view.hidden(small));
+        CHECK(view.hidden(mask, 1, large, {large, small}) == view.hidden(large));
+    }
+    const glm::uvec2 next(176, 176);
+    const Tiles meanwhile = view.hidden(mask, 1, next), exact = view.hidden(next);
+    CHECK(std::ranges::count(meanwhile, 1) > 0);
+    REQUIRE(meanwhile.size() == exact.size());
+    for (std::size_t tile = 0; tile < exact.size(); ++tile) { CHECK(meanwhile[tile] <= exact[tile]); }
+    mask.finish();
+    CHECK(view.hidden(mask, 1, next) == exact);
+    CHECK(found == std::vector<std::pair<unsigned, bool>>{{256, true}, {112, false}, {176, false}});
 }
 
 }  // SUITE(hidden_tiles)

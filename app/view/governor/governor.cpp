@@ -88,6 +88,8 @@ void Governor::wish(Quality quality, Mode mode, const GovernedSettings& own) {
     forget();
 }
 
+double leastScale(Quality quality) { return limitsOf(quality).scale; }
+
 void Governor::forget() {
     settings_ = own_;
     if (turnsKnobs()) { settings_.error_bound_db = limitsOf(quality_).bound_db; }
@@ -135,9 +137,7 @@ double Governor::scaleFor(double ratio) const {
     const double tenths_now = std::round(10.0 * settings_.resolution_scale / own_.resolution_scale);
     const double tenths =
         std::floor(tenths_now * std::pow(ratio, 1.0 / (ratio < 1.0 ? kPowerDown : kPowerUp)) + 1e-6);
-    return std::round(10.0 * own_.resolution_scale *
-                      std::clamp(tenths, 10.0 * limitsOf(quality_).scale, 10.0)) /
-           100.0;
+    return governedScale(own_.resolution_scale, std::clamp(tenths, 10.0 * limitsOf(quality_).scale, 10.0));
 }
 
 KnobLimits Governor::knobLimits() const {

@@ -18,6 +18,9 @@ namespace binosplat {
 enum class Quality { kOff, kSharp, kBalanced, kFast };
 inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fast"};
 
+// How far resolution may fall.
+[[nodiscard]] double leastScale(Quality quality);
+
 // The chosen settings.
 struct GovernedSettings {
     // For modes with a budget, see hasBudget: the share of work that is rendered again.

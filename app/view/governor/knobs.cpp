@@ -214,7 +214,7 @@ Knobs KnobModel::bestBy(const Terms& shares, double most_ms, const KnobLimits& l
         if (is_better && msBy(shares, knobs) <= most_ms) { best = knobs; }
     };
     for (double tenths = 10.0; tenths >= 10.0 * limits.least_scale - 1e-6; --tenths) {
-        const double scale = std::round(10.0 * limits.whole * tenths) / 100.0;
+        const double scale = governedScale(limits.whole, tenths);
         for (double bound_db = limits.most_bound_db;
              bound_db >= std::min(kLeastBoundDb, limits.most_bound_db); --bound_db) {
             consider({scale, bound_db});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -29,6 +30,9 @@ struct KnobFrame {
 struct KnobLimits {
     double least_scale = 0.4, whole = 1.0, most_bound_db = 30.0;
 };
+
+// A resolution of `whole`, in its tenths: in whole percents.
+inline double governedScale(double whole, double tenths) { return std::round(10.0 * whole * tenths) / 100.0; }
 
 class KnobModel {
 public:

@@ -5,29 +5,61 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <future>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
 
+using HiddenTiles = std::array<std::vector<std::uint8_t>, 2>;  // by eye; empty: nothing is hidden
+
+// What a headset's lenses hide of pictures of any size.
+struct LensShape {
+    std::array<xr::HiddenMesh, 2> meshes;
+    std::array<XrFovf, 2> fovs{};
+};
+// May take milliseconds.
+[[nodiscard]] HiddenTiles findHidden(const LensShape& lens, glm::uvec2 size_px);
+
 class LensMask {
 public:
+    using Find = std::function<HiddenTiles(const LensShape& lens, glm::uvec2 size_px)>;
+
+    LensMask() : LensMask(findHidden) {}
+    explicit LensMask(Find find) : find_(std::move(find)) {}
+
     // The hidden tiles for each eye, as FrameSettings expects them, valid until the next call; empty if
-    // nothing is hidden. Recomputed only if a mesh, the angles or the size have changed. Meshes with the same
-    // `version` as in the last call are the same meshes.
+    // nothing is hidden. Found at once if a mesh or the angles have changed; for another size, and for
+    // `others`, which may come next, on a thread: until then only what is known from another size is hidden.
+    // Meshes with the same `version` as in the last call are the same meshes.
     std::array<std::span<const std::uint8_t>, 2> update(const std::array<xr::HiddenMesh, 2>& meshes,
                                                         int version, const std::array<xr::EyeView, 2>& views,
-                                                        glm::uvec2 size_px);
+                                                        glm::uvec2 size_px,
+                                                        std::span<const glm::uvec2> others = {});
+    // True if that is known, or if nothing is hidden.
+    [[nodiscard]] bool knows(glm::uvec2 size_px) const {
+        return found_.empty() || found_.contains({size_px.x, size_px.y});
+    }
+    // Waits until all is known that was asked for.
+    void finish() {
+        if (coming_.valid()) { coming_.wait(); }
+    }
 
 private:
-    struct Eye {
-        int mesh_version = -1;
-        xr::HiddenMesh mesh;
-        XrFovf fov{};
-        glm::uvec2 size_px{0, 0};
-        std::vector<std::uint8_t> hidden;
-    };
-    std::array<Eye, 2> eyes_;
+    using Size = std::pair<std::uint32_t, std::uint32_t>;
+    using Found = std::map<Size, HiddenTiles>;
+    void land();
+
+    Find find_;
+    int version_ = -1;
+    LensShape lens_;
+    Found found_;
+    HiddenTiles meanwhile_;
+    bool is_outdated_ = false;   // what comes is of an earlier lens
+    std::future<Found> coming_;  // last: its thread ends first
 };
 
 }  // namespace binosplat
