@@ -33,8 +33,9 @@ struct FramesAhead {
     }
     // True if the same memory suits both.
     [[nodiscard]] bool hasFramesOf(const FramesAhead& other) const {
-        return hasMethodOf(other) &&
-               (images_px == other.images_px || images_px.x == 0 || other.images_px.x == 0);
+        // The runtime's limit may make images of two resolutions equally large.
+        const bool is_same = images_px == other.images_px && resolution_scale == other.resolution_scale;
+        return hasMethodOf(other) && (is_same || images_px.x == 0 || other.images_px.x == 0);
     }
 };
 

@@ -349,6 +349,16 @@ TEST_CASE("the wearer's own resolution, and axes that stay or do not, come witho
     }
 }
 
+TEST_CASE("frames of another resolution are made ahead even where a limit makes their images as large") {
+    FramesAhead frames;
+    frames.images_px = {64, 64};
+    FramesAhead larger = frames;
+    CHECK(frames.hasFramesOf(larger));
+    larger.resolution_scale = 2.0;
+    CHECK_FALSE(frames.hasFramesOf(larger));
+    CHECK(FramesAhead{}.hasFramesOf(larger));
+}
+
 TEST_CASE("new letters come without a wait") {
     const Workplace work;
     REQUIRE(work.run("scene one-splat --out '\u05d7\u05d3\u05e8.ply'").exit_code == 0);
