@@ -11,8 +11,17 @@ namespace {
 
 constexpr double kShareOfStep = 0.85;
 constexpr double kTurnRadPerSecond = 1.2, kFlyDistancesPerSecond = 0.6, kFaster = 4.0;
+constexpr double kStickRests = 0.15;
+
+double stick(double value) { return std::abs(value) < kStickRests ? 0.0 : value; }
 
 }  // namespace
+
+HeldMotion motionOf(const GamepadState& pad) {
+    return {{stick(pad.left.x), stick(0.5 * (pad.left_trigger - pad.right_trigger)), -stick(pad.left.y)},
+            {stick(pad.right.x), -stick(pad.right.y)},
+            pad.left_bumper};
+}
 
 void CameraMover::beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px,
                             double height_px) {

@@ -15,6 +15,15 @@ struct HeldMotion {
     [[nodiscard]] bool isAny() const { return fly != glm::dvec3(0.0) || turn != glm::dvec2(0.0); }
 };
 
+// A gamepad's sticks (right and down) and triggers, each from -1 to 1; triggers rest at -1.
+struct GamepadState {
+    glm::dvec2 left{0.0}, right{0.0};
+    double left_trigger = -1.0, right_trigger = -1.0;
+    bool left_bumper = false;
+};
+// The left stick and the triggers (the left one down) fly, the right stick looks around.
+HeldMotion motionOf(const GamepadState& pad);
+
 class CameraMover {
 public:
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }

@@ -10,8 +10,9 @@ namespace binosplat {
 
 namespace {
 
-// Pictures in motion may take this long, and have at least this resolution in each direction.
-constexpr double kMotionMs = 25.0, kCoarsest = 0.25;
+// Pictures in motion may take this share of the time between two refreshes, and have at least this resolution
+// in each direction.
+constexpr double kShareOfRefresh = 0.9, kCoarsest = 0.25, kFirst = 0.5;
 // An sRGB format, so that the presenter writes encoded values; the images that receive the bytes do not
 // decode them either.
 constexpr vk::Format kPresented = vk::Format::eR8G8B8A8Srgb, kBytes = vk::Format::eR8G8B8A8Unorm;
@@ -19,13 +20,16 @@ constexpr std::uint32_t kRed = 0xff;  // of these
 
 }  // namespace
 
-void MotionScale::measure(double scale, double gpu_ms) {
+MotionScale::MotionScale(bool is_software) : scale_(is_software ? kCoarsest : kFirst) {}
+
+void MotionScale::measure(double scale, double gpu_ms, double refresh_hz) {
     if (!(gpu_ms > 0.0)) { return; }
     const double full_ms = gpu_ms / (scale * scale);
     full_ms_ = full_ms_ == 0.0 ? full_ms : glm::mix(full_ms_, full_ms, 0.3);
     // In steps of half the pixels, since a change of size waits for the frames in flight, and only for a
     // clear gain.
-    const double steps = std::log2(std::max(full_ms_ / kMotionMs, 1.0)), now = -2.0 * std::log2(scale_);
+    const double most_ms = 1000.0 * kShareOfRefresh / refresh_hz,
+                 steps = std::log2(std::max(full_ms_ / most_ms, 1.0)), now = -2.0 * std::log2(scale_);
     if (std::abs(steps - now) > 0.75) { scale_ = std::max(std::exp2(-0.5 * std::round(steps)), kCoarsest); }
 }
 

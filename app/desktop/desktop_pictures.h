@@ -14,16 +14,20 @@
 namespace binosplat {
 
 // The resolution, each way, of pictures in motion: chosen by the cost of a full one, so that they come about
-// as often as the display is refreshed.
+// as often as the display is refreshed. It begins low, since a first picture at once is worth more than a
+// sharp one later.
 class MotionScale {
 public:
-    // A picture at this share of the resolution took this long on the device.
-    void measure(double scale, double gpu_ms);
+    explicit MotionScale(bool is_software = false);
+
+    // A picture at this share of the resolution took this long on the device; the display is refreshed this
+    // often.
+    void measure(double scale, double gpu_ms, double refresh_hz);
     [[nodiscard]] double scale() const { return scale_; }
 
 private:
     double full_ms_ = 0.0;  // smoothed; 0: not known yet
-    double scale_ = 1.0;
+    double scale_;
 };
 
 class DesktopPictures {

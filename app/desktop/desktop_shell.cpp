@@ -121,6 +121,7 @@ void DesktopShell::takeScene() {
     if (scene == before) { return; }
     pictures_.forget();
     drawn_ = {};
+    motion_ = MotionScale(context_.isSoftware());
     viewpoints_.show(scenes_.get());
     ruler_.close();
     is_shown_ = false;
@@ -237,7 +238,8 @@ void DesktopShell::render(double scale, bool at_rest) {
     renderOther(eyes, settings, at_rest);
     const FrameResult& last = pictures_.lastFrame();
     const double other_ms = scenes_.other() != nullptr ? comparison_->pictures.lastFrame().gpu_total_ms : 0.0;
-    motion_.measure(0.001 * static_cast<double>(last.mark), last.gpu_total_ms + other_ms);
+    motion_.measure(0.001 * static_cast<double>(last.mark), last.gpu_total_ms + other_ms,
+                    window_.refreshHz());
     ++scene_frames_;
     is_shown_ = false;
     layouts_due_ = std::max(layouts_due_, 1);  // its times

@@ -16,7 +16,7 @@ namespace binosplat {
 namespace {
 
 constexpr int kWindowWidthPx = 1280, kWindowHeightPx = 720;
-constexpr double kStickRests = 0.15;
+constexpr int kUsualRefreshHz = 60;
 
 DesktopWindow& self(GLFWwindow* window) {
     return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window));
@@ -31,13 +31,32 @@ std::string utf8Of(unsigned letter) {
     return {byte(0xf0 | letter >> 18), more(12), more(6), more(0)};
 }
 
-double stick(float value) { return std::abs(value) < kStickRests ? 0.0 : static_cast<double>(value); }
-
 bool gamepadState(GLFWgamepadstate& state) {
     for (int pad = GLFW_JOYSTICK_1; pad <= GLFW_JOYSTICK_LAST; ++pad) {
         if (glfwGetGamepadState(pad, &state) == GLFW_TRUE) { return true; }
     }
     return false;
+}
+
+// The one that shows the middle of the window; the first one if none does, or where windows do not know their
+// place (Wayland). Null: there is none.
+GLFWmonitor* monitorOf(GLFWwindow* window) {
+    glm::ivec2 at(0), size_px(0), low(0);
+    glfwGetWindowPos(window, &at.x, &at.y);
+    glfwGetWindowSize(window, &size_px.x, &size_px.y);
+    const glm::ivec2 middle = at + size_px / 2;
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    for (int i = 0; i < count; ++i) {
+        glfwGetMonitorPos(monitors[i], &low.x, &low.y);
+        const GLFWvidmode* const mode = glfwGetVideoMode(monitors[i]);
+        if (mode == nullptr) { continue; }
+        const glm::ivec2 high = low + glm::ivec2(mode->width, mode->height);
+        if (glm::all(glm::greaterThanEqual(middle, low)) && glm::all(glm::lessThan(middle, high))) {
+            return monitors[i];
+        }
+    }
+    return glfwGetPrimaryMonitor();
 }
 
 }  // namespace
@@ -121,6 +140,7 @@ void DesktopWindow::listen() {
         if (count == 2) { self(w).add({.kind = Kind::kDrop, .path = paths[0], .second = paths[1]}); }
         if (count == 1 || count > 2) { self(w).add({.kind = Kind::kDrop, .path = paths[count - 1]}); }
     });
+    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { self(w).refresh_hz_ = 0; });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { self(w).is_damaged_ = true; });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { self(w).is_damaged_ = true; });
 }
@@ -144,14 +164,16 @@ HeldMotion DesktopWindow::heldMotion() const {
                       {held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT), held(GLFW_KEY_UP) - held(GLFW_KEY_DOWN)},
                       held(GLFW_KEY_LEFT_SHIFT) + held(GLFW_KEY_RIGHT_SHIFT) > 0.0};
     if (GLFWgamepadstate pad{}; gamepadState(pad)) {
-        const float* const axes = pad.axes;  // triggers rest at -1
-        motion.fly += glm::dvec3(
-            stick(axes[GLFW_GAMEPAD_AXIS_LEFT_X]),
-            stick(0.5f * (axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] - axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER])),
-            -stick(axes[GLFW_GAMEPAD_AXIS_LEFT_Y]));
-        motion.turn +=
-            glm::dvec2(stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_X]), -stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]));
-        motion.fast = motion.fast || pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS;
+        const float* const axes = pad.axes;
+        const HeldMotion held_there =
+            motionOf({{axes[GLFW_GAMEPAD_AXIS_LEFT_X], axes[GLFW_GAMEPAD_AXIS_LEFT_Y]},
+                      {axes[GLFW_GAMEPAD_AXIS_RIGHT_X], axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]},
+                      axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER],
+                      axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER],
+                      pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS});
+        motion.fly += held_there.fly;
+        motion.turn += held_there.turn;
+        motion.fast = motion.fast || held_there.fast;
     }
     return motion;
 }
@@ -191,6 +213,15 @@ glm::dvec2 DesktopWindow::inPixels(const glm::dvec2& place) const {
     return place * glm::dvec2(sizePx()) / glm::dvec2(glm::max(size, glm::ivec2(1)));
 }
 
+double DesktopWindow::refreshHz() {
+    if (refresh_hz_ == 0) {
+        GLFWmonitor* const monitor = monitorOf(window_.get());
+        const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+        refresh_hz_ = mode != nullptr && mode->refreshRate > 0 ? mode->refreshRate : kUsualRefreshHz;
+    }
+    return refresh_hz_;
+}
+
 void DesktopWindow::setTitle(const std::string& title) { glfwSetWindowTitle(window_.get(), title.c_str()); }
 
 void DesktopWindow::toggleFullScreen() {
@@ -199,7 +230,7 @@ void DesktopWindow::toggleFullScreen() {
     if (glfwGetWindowMonitor(window) != nullptr) {
         return glfwSetWindowMonitor(window, nullptr, before.x, before.y, before.z, before.w, GLFW_DONT_CARE);
     }
-    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    GLFWmonitor* const monitor = monitorOf(window);
     if (monitor == nullptr) { return; }
     glfwGetWindowPos(window, &before.x, &before.y);
     glfwGetWindowSize(window, &before.z, &before.w);

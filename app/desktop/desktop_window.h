@@ -49,6 +49,8 @@ public:
     [[nodiscard]] glm::uvec2 sizePx() const;
     // Ratio of its pixels to those in which desktops count.
     [[nodiscard]] double scale() const;
+    // Pictures that its monitor shows in a second.
+    [[nodiscard]] double refreshHz();
     void setTitle(const std::string& title);
     void toggleFullScreen();
     // The pointer is the one for what can be dragged to both sides.
@@ -74,6 +76,7 @@ private:
     std::vector<DesktopEvent> events_;
     glm::dvec2 cursor_{0.0};  // in GLFW's units
     bool is_damaged_ = true;
+    int refresh_hz_ = 0;                // 0: to be asked for
     glm::ivec4 before_full_screen_{0};  // place and size
 };
 

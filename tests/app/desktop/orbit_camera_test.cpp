@@ -41,12 +41,35 @@ TEST_CASE("what is under the pointer stays there or follows it, and the camera s
     CHECK(glm::distance(mover.camera().position(), kView.eye) > 0.5);
     mover.turnWheel(3.0, kUnder);
     CHECK(isUnder(start));
+    // Touchpads turn the wheel by parts of a step.
+    const OrbitCamera there = mover.camera();
+    mover.turnWheel(-1.0, kUnder);
+    for (int i = 0; i < 4; ++i) { mover.turnWheel(0.25, kUnder); }
+    CHECK(glm::distance(mover.camera().position(), there.position()) < 1e-9);
     CHECK(mover.camera().distance() < 0.7 * glm::distance(kView.eye, kView.look));
     drag(CameraMover::Drag::kPan, step);
     CHECK(isUnder(start + step));
     // It is never upside down.
     drag(CameraMover::Drag::kOrbit, {0.0, 5000.0});
     checkUpright(mover.camera());
+}
+
+TEST_CASE("keys and gamepads fly, four times as fast if asked; a stick near its rest does nothing") {
+    const auto flown = [](const HeldMotion& held) {
+        CameraMover mover;
+        mover.set(OrbitCamera(kView));
+        mover.pass(held, 0.1);
+        return glm::distance(mover.camera().position(), kView.eye);
+    };
+    const double step = flown({.fly = {0.0, 0.0, 1.0}});
+    CHECK(step > 0.1);
+    CHECK(flown({.fly = {0.0, 0.0, 1.0}, .fast = true}) == doctest::Approx(4.0 * step));
+    CHECK_FALSE(motionOf({}).isAny());
+    CHECK_FALSE(motionOf({{0.1, -0.14}, {-0.1, 0.1}, -0.9, -1.0}).isAny());
+    const HeldMotion held = motionOf({{0.5, -1.0}, {-0.7, 0.8}, 1.0, -1.0, true});
+    CHECK(these(held.fly == glm::dvec3(0.5, 1.0, 1.0), held.turn == glm::dvec2(-0.7, -0.8), held.fast) ==
+          these(true, true, true));
+    CHECK(motionOf({.right_trigger = 1.0}).fly.y == -1.0);
 }
 
 TEST_CASE("a way ends where it leads, the shorter way round; a new centre comes into the middle") {
@@ -102,18 +125,23 @@ TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, w
     CHECK_FALSE(partAt(partsOf(WindowStereo::kMono, {100, 60}), {100, 30}).has_value());
 }
 
-TEST_CASE("pictures in motion are smaller on a slow device, and do not change their size for a little") {
-    MotionScale slow, fast;
-    for (int i = 0; i < 50; ++i) {
-        slow.measure(slow.scale(), 100.0 * slow.scale() * slow.scale());
-        fast.measure(fast.scale(), 20.0 * fast.scale() * fast.scale());
-    }
-    CHECK(fast.scale() == 1.0);
-    CHECK(slow.scale() == doctest::Approx(0.5));
-    for (int i = 0; i < 50; ++i) {
-        slow.measure(slow.scale(), (i % 2 == 0 ? 140.0 : 80.0) * slow.scale() * slow.scale());
-    }
-    CHECK(slow.scale() == doctest::Approx(0.5));
+TEST_CASE("the first picture is coarse, those in motion keep up with the display, with a size that rests") {
+    CHECK(MotionScale().scale() < 1.0);
+    CHECK(MotionScale(/*is_software*/ true).scale() < MotionScale().scale());
+    // The scale after many pictures that take one of these times each in full.
+    const auto scaleFor = [](const std::array<double, 2>& full_ms, double refresh_hz) {
+        MotionScale motion;
+        std::set<double> last;
+        for (std::size_t i = 0; i < 100; ++i) {
+            motion.measure(motion.scale(), full_ms[i % 2] * motion.scale() * motion.scale(), refresh_hz);
+            if (i >= 50) { last.insert(motion.scale()); }
+        }
+        CHECK(last.size() == 1);
+        return motion.scale();
+    };
+    CHECK(scaleFor({12.0, 12.0}, 60.0) == 1.0);
+    CHECK(scaleFor({12.0, 12.0}, 144.0) == doctest::Approx(std::sqrt(0.5)));
+    CHECK(scaleFor({84.0, 48.0}, 60.0) == doctest::Approx(0.5));
 }
 
 }  // SUITE(orbit_camera)
