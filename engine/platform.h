@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -73,8 +74,13 @@ double threadSeconds();
 void letLongWritesFail();
 
 // Runs a program, found as a shell would find it, with its output going to the new file `log`; returns true
-// if its exit status was 0. Throws Error if it cannot be started.
-bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
+// if its exit status was 0. It is ended once `ends` says so, if that is given. Throws Error if it cannot be
+// started.
+bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log,
+                const std::function<bool()>& ends = {});
+
+// A function of a library that need not be installed, which stays loaded; null if it is missing.
+void* functionOf(const char* library, const char* function);
 
 // Opens a file on a disk for reading, without ever waiting. For anything else (a pipe, a device, a folder)
 // returns null and the reason in a few words.

@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -139,7 +140,13 @@ double threadSeconds() {
 
 void letLongWritesFail() { std::signal(SIGXFSZ, SIG_IGN); }
 
-bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
+void* functionOf(const char* library, const char* function) {
+    void* const loaded = ::dlopen(library, RTLD_NOW | RTLD_LOCAL);
+    return loaded != nullptr ? ::dlsym(loaded, function) : nullptr;
+}
+
+bool runProgram(const std::vector<std::string>& words, const fs::path& log,
+                const std::function<bool()>& ends) {
     std::vector<std::string> copies = words;  // posix_spawn wants text that may be changed
     std::vector<char*> arguments;
     for (std::string& word : copies) { arguments.push_back(word.data()); }
@@ -154,7 +161,14 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
     posix_spawn_file_actions_destroy(&actions);
     check(failed == 0, "{} cannot be run ({})", words[0], std::strerror(failed));
     int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    for (;;) {
+        const pid_t ended = ::waitpid(child, &status, ends ? WNOHANG : 0);
+        if (ended == child || (ended < 0 && errno != EINTR)) { break; }
+        if (ended < 0) { continue; }
+        if (ends()) { ::kill(child, SIGTERM); }
+        constexpr timespec kBetween{0, 50'000'000};
+        ::nanosleep(&kBetween, nullptr);
+    }
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 

@@ -192,7 +192,10 @@ double threadSeconds() {
 
 void letLongWritesFail() {}  // they do
 
-bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
+void* functionOf(const char*, const char*) { return nullptr; }
+
+bool runProgram(const std::vector<std::string>& words, const fs::path& log,
+                const std::function<bool()>& ends) {
     std::wstring line;
     for (const std::string& word : words) { line += (line.empty() ? L"" : L" ") + quoted(wide(word)); }
     SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
@@ -211,7 +214,9 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
     check(started != 0, "{} cannot be run (error {})", words[0], ::GetLastError());
     const Handle running(process.hProcess), thread(process.hThread);
     DWORD code = 1;
-    ::WaitForSingleObject(running.get(), INFINITE);
+    while (::WaitForSingleObject(running.get(), ends ? 50 : INFINITE) == WAIT_TIMEOUT) {
+        if (ends()) { ::TerminateProcess(running.get(), 1); }
+    }
     return ::GetExitCodeProcess(running.get(), &code) != 0 && code == 0;
 }
 

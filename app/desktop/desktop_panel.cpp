@@ -138,7 +138,7 @@ void DesktopShell::load() {
 void DesktopShell::openFile() {
     if (!dialogs_.now().empty()) { return; }  // it is already open
     dialogs_.read("choosing a file", [this]() -> FileWorker::Done {
-        return [this, chosen = askForFile()] {
+        return [this, chosen = askForFile([this] { return leaving_.load(); })] {
             if (!chosen.trouble.empty()) { return say(chosen.trouble); }
             if (!chosen.file.empty()) { scenes_.begin(chosen.file); }
         };

@@ -15,6 +15,7 @@
 #include "app/view/settings/view_state.h"
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <map>
 
@@ -126,8 +127,9 @@ private:
     PanelPointer pointer_;  // on the panel
     double angle_rad_;      // of view
     Sight drawn_;
-    bool is_refined_ = true, is_shown_ = true, leaving_ = false, writes_picture_ = false;
-    int layouts_due_ = 2;  // widgets settle one layout after input
+    bool is_refined_ = true, is_shown_ = true, writes_picture_ = false;
+    std::atomic<bool> leaving_ = false;  // dialogs ask, too
+    int layouts_due_ = 2;                // widgets settle one layout after input
     std::uint64_t shown_panel_ = 0, scene_frames_ = 0, pictures_without_scene_ = 0, moment_ = 0;
     Ruler ruler_;
     glm::dvec2 pressed_px_{0.0};  // the last press of the left button

@@ -1,6 +1,7 @@
 // The desktop's own dialog for choosing a file.
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace binosplat {
@@ -10,7 +11,7 @@ struct ChosenFile {
     std::string trouble;  // why there is no dialog
 };
 
-// Waits until the user has chosen. Uses zenity or kdialog, which ask the desktop's portal if there is one.
-ChosenFile askForFile();
+// Waits until the user has chosen, or until `ends`. Asks the desktop's portal, or else zenity or kdialog.
+ChosenFile askForFile(const std::function<bool()>& ends);
 
 }  // namespace binosplat

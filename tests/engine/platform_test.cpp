@@ -210,6 +210,9 @@ TEST_CASE_FIXTURE(AtWork, "a program runs with what it prints in a new file") {
     CHECK(work.bytesOf("victim") == "keep me");
     CHECK_THROWS_WITH_AS(runProgram({"no-such-program-anywhere"}, work.path / "third"),
                          "no-such-program-anywhere cannot be run (No such file or directory)", Error);
+    CHECK_FALSE(runProgram({"sleep", "600"}, work.path / "ended", [] { return true; }));
+    CHECK(these(functionOf("libc.so.6", "getpid") == nullptr, functionOf("libc.so.6", "no-such") == nullptr,
+                functionOf("libno-such.so", "getpid") == nullptr) == these(false, true, true));
 }
 
 TEST_CASE(
