@@ -17,6 +17,8 @@ double stick(double value) { return std::abs(value) < kStickRests ? 0.0 : value;
 
 }  // namespace
 
+double wheelStepsOf(double enlarged) { return -std::log(enlarged) / std::log(kShareOfStep); }
+
 HeldMotion motionOf(const GamepadState& pad) {
     return {{stick(pad.left.x), stick(0.5 * (pad.left_trigger - pad.right_trigger)), -stick(pad.left.y)},
             {stick(pad.right.x), -stick(pad.right.y)},

@@ -24,6 +24,9 @@ struct GamepadState {
 // The left stick and the triggers (the left one down) fly, the right stick looks around.
 HeldMotion motionOf(const GamepadState& pad);
 
+// Steps of the wheel that make what is under the pointer so many times as large.
+double wheelStepsOf(double enlarged);
+
 class CameraMover {
 public:
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }

@@ -78,6 +78,7 @@ DesktopWindow::DesktopWindow(const Context& context)
     sideways_.reset(glfwCreateStandardCursor(GLFW_HRESIZE_CURSOR));
     makePictures();
     listen();
+    pinch_ = std::make_unique<Pinch>(window_.get(), glfwPostEmptyEvent);
 }
 
 DesktopWindow::~DesktopWindow() {
@@ -148,6 +149,9 @@ void DesktopWindow::listen() {
 void DesktopWindow::wait(double most_seconds) {
     if (most_seconds > 0.0 && events_.empty()) { glfwWaitEventsTimeout(most_seconds); }
     glfwPollEvents();
+    if (const double apart = pinch_->take(); apart != 1.0) {
+        add({.kind = DesktopEvent::Kind::kWheel, .steps = wheelStepsOf(apart), .path = {}});
+    }
 }
 
 std::vector<DesktopEvent> DesktopWindow::takeEvents() { return std::exchange(events_, {}); }

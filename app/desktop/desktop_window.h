@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/desktop/camera_mover.h"
+#include "app/desktop/pinch.h"
 #include "app/view/window/window_pictures.h"
 
 #include <glm/glm.hpp>
@@ -21,7 +22,7 @@ struct DesktopEvent {
     enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kText, kDrop, kLeave } kind;
     glm::dvec2 place_px{0.0};
     int code = 0;          // GLFW's number of a key or a button
-    double steps = 0.0;    // of the wheel, away from the user
+    double steps = 0.0;    // of the wheel, away from the user; a pinch turns it, too
     std::string path;      // that was dropped, or a letter that was typed, in UTF-8
     std::string second{};  // that was dropped with it, if these were two
 };
@@ -73,6 +74,7 @@ private:
     std::unique_ptr<GLFWcursor, void (*)(GLFWcursor*)> sideways_;
     bool points_sideways_ = false;
     std::unique_ptr<WindowPictures> pictures_;
+    std::unique_ptr<Pinch> pinch_;
     std::vector<DesktopEvent> events_;
     glm::dvec2 cursor_{0.0};  // in GLFW's units
     bool is_damaged_ = true;

@@ -46,6 +46,11 @@ TEST_CASE("what is under the pointer stays there or follows it, and the camera s
     mover.turnWheel(-1.0, kUnder);
     for (int i = 0; i < 4; ++i) { mover.turnWheel(0.25, kUnder); }
     CHECK(glm::distance(mover.camera().position(), there.position()) < 1e-9);
+    // And pinches, by as much as the fingers move apart.
+    mover.turnWheel(wheelStepsOf(2.0), kUnder);
+    CHECK(glm::distance(mover.camera().position(), kUnder) ==
+          doctest::Approx(0.5 * glm::distance(there.position(), kUnder)));
+    mover.turnWheel(wheelStepsOf(0.5), kUnder);
     CHECK(mover.camera().distance() < 0.7 * glm::distance(kView.eye, kView.look));
     drag(CameraMover::Drag::kPan, step);
     CHECK(isUnder(start + step));
