@@ -97,6 +97,7 @@ void trace(const char* call, VkFence fence) {
     if (std::FILE* const file = traceFile(); file != nullptr) {
         std::fprintf(file, "%s %llx\n", call,
                      static_cast<unsigned long long>(reinterpret_cast<std::uintptr_t>(fence)));
+        std::fflush(file);
     }
 }
 

@@ -56,6 +56,16 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
     [[nodiscard]] const std::string& said() const { return said_; }
+    // The processor's time that it took, without that of programs that it ran.
+    [[nodiscard]] double processorSeconds() const {
+        const std::string line = textIn(fmt::format("/proc/{}/stat", process_));
+        std::istringstream words(line.substr(line.rfind(')') + 2));
+        std::string other;
+        for (int i = 0; i < 11; ++i) { words >> other; }
+        double user = 0.0, system = 0.0;
+        words >> user >> system;
+        return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+    }
     // It ends without an error, and says `last`.
     void checkEnd(const std::string& last = "frames; ") {
         CHECK(exitCode() == 0);
@@ -243,7 +253,8 @@ inline void clickCross(const std::string& window_name) {
 // With the real clock: in lock-step it would draw as fast as it can while the input is on its way.
 inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
     return "env DISPLAY=" + desk(dpi).screen.name +
-           " WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 SIMULATED_OPENXR_CLOCK=real "
+           " WAYLAND_DISPLAY= DBUS_SESSION_BUS_ADDRESS=unix:path=/nonexistent BINOSPLAT_VALIDATION=1 "
+           "SIMULATED_OPENXR_CLOCK=real "
            "XDG_CONFIG_HOME=\"$PWD/../config\" "
            "PATH=\"$PWD/tools:$PATH\" '" BINOSPLAT_PROGRAM "' view " +
            arguments;

@@ -21,6 +21,7 @@ TEST_CASE_FIXTURE(Home, "scenes are looked for by clicks, and what cannot be rea
     CHECK(titleAfter("Scenes") == here);  // the folder of the scene that is shown
     CHECK(chosen("gone.ply").empty());
     CHECK(chosen("a##b.ply") == scene);
+    CHECK(sketch.click("favourite a##b.ply").favourite == scene);
     CHECK(titleAfter("inner/") == inner);
     CHECK(sketch.chooser.pageCount() == 2);
     CHECK_FALSE(sketch.draw().places.contains("room11.ply"));

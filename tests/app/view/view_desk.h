@@ -1,0 +1,85 @@
+// The window without a headset, on a display without a screen, with a mouse and keys.
+#pragma once
+
+#include "tests/app/view/view_window.h"
+
+namespace binosplat::test {
+
+// The desktop's dialog does this: "echo FILE" chooses a file.
+inline void dialogDoes(const Workplace& work, const std::string& command) {
+    const fs::path dialog = work.path / "tools" / "zenity";
+    fs::create_directories(dialog.parent_path());
+    std::ofstream(dialog) << "#!/bin/sh\n" << command << '\n';
+    fs::permissions(dialog, fs::perms::owner_all);
+}
+
+class Window : public Program {
+public:
+    Window(const Workplace& work, const std::string& options, const std::string& environment = "",
+           const std::string& scene = "builtin:slanted-wall")
+        : Program((picturesInto(work), work.path),
+                  "env " + environment + viewOnDesk(scene + " " + options).substr(3)) {
+        await("shows ");
+        point();
+    }
+    // Keys go to the window that contains the mouse.
+    static void point() {
+        hands("search --sync --onlyvisible --name ' - binosplat$' mousemove --window %1 20 20");
+    }
+    // Shows or hides the help: once it has changed, everything before has reached the window. Returns the
+    // number of its latest picture.
+    std::uint64_t help() {
+        hands("key h");
+        const std::string lines = await("help");
+        return frameOf(lines.substr(lines.rfind("frame ")));
+    }
+    // Waits until the window shows all pixels: only then does it write a picture that was requested.
+    void rest() {
+        hands("key p");
+        picture_ = await("/pictures/");
+        picture_ = picture_.substr(picture_.rfind(": picture ") + 10);
+        picture_.pop_back();
+    }
+    [[nodiscard]] const std::string& picture() const { return picture_; }  // file of the latest picture
+    // The colour at a place, after the keys and clicks that came before; then returns to the start view.
+    glm::dvec3 seenAt(const glm::dvec2& place) {
+        help();
+        rest();
+        hands(moveTo(place) + "click --repeat 2 --delay 20 1");
+        const std::string line = await("the centre is ");
+        glm::dvec3 point(0.0);
+        REQUIRE(std::sscanf(line.substr(line.find("centre is")).c_str(), "centre is %lf, %lf, %lf", &point.x,
+                            &point.y, &point.z) == 3);
+        await("arrived");
+        hands("key r");
+        await("arrived");
+        rest();
+        return point;
+    }
+    void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
+        for (const std::string& does : {moveTo(from), fmt::format("mousedown {}", button), moveTo(to),
+                                        fmt::format("mouseup {}", button)}) {
+            hands(does);
+        }
+    }
+    // Clicks on the panel, which has a scale of 0.7 and is in the upper right corner; on its page of scenes a
+    // folder may be open.
+    static void click(const std::string& widget, PanelPage page, const std::string& folder = "") {
+        PanelSketch sketch;
+        sketch.status.window.emplace();
+        sketch.settings.page = page;
+        if (!folder.empty()) { sketch.chooser.showFolder(folder); }
+        const glm::dvec2 size(glm::ivec2(0.7 * glm::dvec2(kPanelPx)));
+        hands(moveTo(glm::dvec2(1280.0 - size.x, 0.0) + shareOf(sketch.draw().places, widget) * size) +
+              "click 1");
+    }
+    void end() {
+        hands("key Escape");
+        checkEnd(" pictures in the window, ");
+    }
+
+private:
+    std::string picture_;
+};
+
+}  // namespace binosplat::test
