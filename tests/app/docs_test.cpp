@@ -195,6 +195,22 @@ TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats an
     for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
         CHECK_MESSAGE(contains(opened, type + ";"), type);
     }
+    // Once the formats are installed, files have these types, so that a double click opens the program.
+    if (!test::isInstalled("update-mime-database", "shared-mime-info") ||
+        !test::isInstalled("gio", "libglib2.0-bin")) {
+        return;
+    }
+    const Outcome types = work.runCommand(
+        "mkdir -p share/mime/packages && cp '" + base +
+        ".xml' share/mime/packages && export XDG_DATA_HOME=\"$PWD/share\" && "
+        "update-mime-database share/mime && for name in ply spz sog splat ksplat glb; do "
+        "echo x >scene.$name && gio info -a standard::content-type scene.$name || exit; done");
+    CHECK_MESSAGE(types.exit_code == 0, types.errors);
+    std::string given;
+    for (const std::string& type : findAll(types.output, "standard::content-type: (.+)\n")) {
+        given += type + ";";
+    }
+    CHECK(given == opened);
 }
 
 TEST_CASE_FIXTURE(test::AtWork, "bash completes commands, options, the values of choices, and files") {

@@ -4,6 +4,7 @@
 #include "engine/picture/panorama_tags.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/run_program.h"
+#include "tests/xr/simulated/installed.h"
 
 SUITE(panorama) {
 
@@ -217,6 +218,16 @@ TEST_CASE_FIXTURE(AtWork, "a path becomes a film with both eyes; without ffmpeg 
             .size_px == glm::uvec2(64, 32));
     work.checkRefused(film + "--out no", 1, "ffmpeg", "PATH=" + here);
     CHECK(!work.holds("no"));
+
+    // The encoder itself makes a film that players read so.
+    if (!isInstalled("ffmpeg", "ffmpeg") || !isInstalled("ffprobe", "ffmpeg")) { return; }
+    work.go(film + "--projection vr180 --out real");
+    const std::string read =
+        work.runCommand("ffprobe -v error -count_frames -show_streams real/video.mp4").output;
+    for (const char* said : {"codec_name=h264\n", "width=64\n", "nb_read_frames=3\n", "frame_rate=25/1\n",
+                             "type=side by side\n", "projection=tiled equirectangular\n"}) {
+        CHECK_MESSAGE(contains(read, said), read);
+    }
 }
 
 }  // SUITE(panorama)
