@@ -3,7 +3,6 @@
 #include "app/desktop/open_dialog.h"
 #include "app/view/panel/measure.h"
 #include "app/view/placement/placement.h"
-#include "app/view/settings/view_files.h"
 #include "engine/error.h"
 
 #include <algorithm>
@@ -14,25 +13,10 @@ namespace binosplat {
 
 void DesktopShell::layOutPanel(const PanelPointer& pointer, double seconds) {
     layouts_due_ = std::max(layouts_due_ - 1, 0);
-    PanelStatus& status = panel_.status();
-    const LoadedScene* const scene = scenes_.get();
-    status.scene = scenes_.names();
-    status.compares = scenes_.other() != nullptr;
-    status.compares_next = scenes_.comparesNext();
-    status.shows_other = status.compares && comparison_->is_whole_asked;
-    status.loading = scenes_.loading();
-    status.has_scene = scene != nullptr;
-    status.time.reset();
-    if (scene != nullptr) {
-        status.facts = describeFacts(scene->facts, scene->measured.value_or(options_.run.metres_per_unit));
-        status.place.view = viewpoints_.at();
-        status.viewpoint_count = viewpoints_.count();
-        status.viewpoint = viewpoints_.current() != nullptr ? viewpoints_.current()->name : "";
-        status.tours = viewpoints_.isTouring();
-        if (scene->moving != nullptr) {
-            status.time = {scene->clock.frame(), scene->clock.frameCount(), scene->moving->rateHz(),
-                           scene->clock.plays(), scene->moving->counters().scene_frames_late};
-        }
+    requests_.fillStatus(comparison_ && comparison_->is_whole_asked, viewpoints_);
+    if (const LoadedScene* const scene = scenes_.get(); scene != nullptr) {
+        panel_.status().facts =
+            describeFacts(scene->facts, scene->measured.value_or(options_.run.metres_per_unit));
     }
     panel_.showTimes(pictures_.lastFrame(), "", seconds);
     panel_.askFor(files_, state_.settings());
@@ -98,20 +82,10 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
         state_.place(level);
         notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
     }
-    if (requests.load) { load(); }
-    if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
-    if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
-    if (requests.last_scene && scenes_.get() != nullptr) {
-        notes_.openLast(*scenes_.get(), [this](const std::string& scene) { scenes_.begin(scene); });
-    }
-    if (!requests.favourite.empty()) {
-        notes_.toggleFavourite(requests.favourite, [this] { panel_.listAnew(); });
-    }
-    if (requests.compare) {
-        say(scenes_.toggleComparison());
-        // On the page with the list of scenes, it is chosen from that list.
-        if (scenes_.comparesNext() && state_.settings().page != PanelPage::kScenes) { openFile(); }
-    }
+    requests_.follow(requests);
+    // On the page with the list of scenes, the scene to compare with is chosen from that list.
+    const bool chooses = requests.compare && scenes_.comparesNext();
+    if (chooses && state_.settings().page != PanelPage::kScenes) { openFile(); }
     if (requests.show_other && comparison_) { comparison_->is_whole_asked = !comparison_->is_whole_asked; }
     if (requests.open_file) { openFile(); }
     if (requests.take_picture && scenes_.get() != nullptr) { writes_picture_ = true, is_refined_ = false; }
@@ -121,18 +95,6 @@ void DesktopShell::showPanel() {
     ViewSettings settings = state_.settings();
     settings.panel = true;
     state_.set(settings);
-}
-
-void DesktopShell::load() {
-    files_.read("loading saved settings", [this, scene = scenes_.name()]() -> FileWorker::Done {
-        return [this, scene, saved = readSavedSettings(scene)] {
-            if (scene != scenes_.name()) { return; }  // meanwhile another one has come
-            ViewSettings loaded = state_.settings();
-            say(takeSavedSettings(saved, loaded));
-            loaded.panel = state_.settings().panel;
-            state_.set(loaded);
-        };
-    });
 }
 
 void DesktopShell::openFile() {

@@ -53,7 +53,9 @@ DesktopShell::DesktopShell(const ViewOptions& options, const ViewSettings& setti
       angle_rad_(glm::radians(options.run.camera.fov_x_deg.value_or(kUsualAngleDeg))),
       notes_(files_, [this](const std::string& message) { say(message); }),
       viewpoints_(files_, [this](const std::string& message) { say(message); }),
-      scenes_(context_, options_, log_, framesAhead(settings, window_.sizePx())) {
+      scenes_(context_, options_, log_, framesAhead(settings, window_.sizePx())),
+      requests_(state_, scenes_, notes_, files_, panel_,
+                [this](const std::string& message) { say(message); }) {
     panel_.status().window.emplace();
     if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) {
         log_.print(complaint);

@@ -8,6 +8,7 @@
 #include "app/terminal/frame_log.h"
 #include "app/view/files/picture_writer.h"
 #include "app/view/panel/panel_picture.h"
+#include "app/view/panel/scene_requests.h"
 #include "app/view/placement/ruler.h"
 #include "app/view/scenes/scene_notes.h"
 #include "app/view/scenes/shown_scene.h"
@@ -103,7 +104,6 @@ private:
     void openAndSave(const PanelRequests& requests);
     void measure(const PanelRequests& requests);
     void changeViewpoints(const PanelRequests& requests);
-    void load();
     void openFile();
     void openDropped(const DesktopEvent& event);
     void takePicture();
@@ -138,7 +138,8 @@ private:
     ViewpointList viewpoints_;
     FileWorker dialogs_, files_;  // their threads end before the objects that use their results
     ShownScene scenes_;           // its loading thread ends before them
-    PictureWriter writer_;        // last: it shows scenes
+    SceneRequests requests_;
+    PictureWriter writer_;  // last: it shows scenes
 };
 
 }  // namespace binosplat

@@ -29,6 +29,12 @@ struct FrameViews {
     std::array<xr::EyeView, 2> pictures;
 };
 
+// A picture of the frame: its eye, and that of what is seen of it.
+struct SeenPicture {
+    int eye_of_frame;
+    Eye picture, view;
+};
+
 class SceneRenderer {
 public:
     // `format` is the format of every session's images; the rest must outlive this.
@@ -87,9 +93,12 @@ public:
     }
     // The last frame that the device has finished. No counters before a scene's first frame.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
-    // The eyes of the prepared pictures, and those of what is seen of them.
-    [[nodiscard]] const std::vector<Eye>& pictures() const { return eyes_; }
-    [[nodiscard]] const std::vector<Eye>& views() const { return seen_; }
+    // The dominant eye's prepared picture, or the only one; empty: none is prepared.
+    [[nodiscard]] std::optional<SeenPicture> seenPicture() const {
+        if (eyes_.empty()) { return {}; }
+        const std::size_t at = frame_.mode == Mode::kMono ? 0 : static_cast<std::size_t>(frame_.dominant);
+        return SeenPicture{static_cast<int>(at), eyes_[at], seen_[at]};
+    }
     // True if the eyes saw background in the last two frames because a list was full.
     [[nodiscard]] bool wasCutShort() const { return was_cut_short_; }
     // Another scene is shown: counters and costs of the previous one do not apply.

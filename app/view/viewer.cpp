@@ -5,6 +5,7 @@
 #include "app/view/panel/panel_style.h"
 #include "app/view/shader_reload.h"
 #include "engine/error.h"
+#include "engine/places/standpoint.h"
 
 #include <cmath>
 #include <thread>
@@ -24,19 +25,22 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       instance_(instance),
       context_(context),
       state_(settings),
-      drawn_(settings),
-      connection_(instance, context, kPanelPx, [this](const std::string& message) { log_.say(message); }),
+      connection_(instance, context, kPanelPx, log_line_),
       renderer_(instance, context, options_.run, log_, connection_.format()),
+      submission_(instance.troubles(), state_, renderer_, options_.run.camera.near.value_or(kUsualNear),
+                  log_line_),
       panel_(context, connection_.format()),
+      window_(say_),
       waiting_(context_),
-      probe_(context_),
-      copy_(context_),
-      notes_(files_, [this](const std::string& message) { say(message); }),
-      first_steps_(files_, settings.first_steps),
-      viewpoints_(files_, [this](const std::string& message) { say(message); }),
-      scenes_(
-          context_, options_, log_,
-          FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint}) {
+      pointing_(context_),
+      notes_(files_, say_),
+      message_line_(files_, settings.first_steps),
+      place_(state_, notes_, files_, options_.run.metres_per_unit, say_, log_line_),
+      scenes_(context_, options_, log_,
+              FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint}),
+      drawn_(context_, state_, scenes_, renderer_, options_.load_first, say_, log_line_),
+      requests_(state_, scenes_, notes_, files_, panel_, say_),
+      kept_picture_(context_, scenes_, renderer_, notes_) {
     for (const double rate_hz : headset().refresh_rates) {
         if (options_.usual_rate_hz == 0.0 || std::abs(rate_hz - options_.usual_rate_hz) > 0.5) { continue; }
         ViewSettings usual = state_.settings();
@@ -47,7 +51,10 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) {
         log_.print(complaint);
     }
-    if (window != nullptr) { openWindow(*window); }
+    if (window == nullptr) { return; }
+    if (const std::string why = window_.open(context_, panel_.canvas(), *window); !why.empty()) {
+        log_.print(fmt::format("no window: {}", why));
+    }
 }
 
 void Viewer::run() {
@@ -75,7 +82,7 @@ void Viewer::run() {
         throw;
     }
     while (const std::optional<std::string> outcome = pictures_.finish()) { say(*outcome); }
-    keepPictureAtOnce();
+    kept_picture_.keepAtOnce();
     keepPreferences(0.0, true);
     files_.finish();
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->moving != nullptr) {
@@ -124,8 +131,7 @@ void Viewer::loseHeadset(const std::string& why) {
 
 bool Viewer::comeBack() {
     if (leaving_) { return false; }
-    const HeadsetConnection::Search came =
-        connection_.search([this](const std::string& message) { say(message); });
+    const HeadsetConnection::Search came = connection_.search(say_);
     if (came == HeadsetConnection::Search::kLater) {
         drawWindowAlone("The headset is unplugged: plug it in");
         std::this_thread::sleep_for(kIdle);
@@ -133,14 +139,9 @@ bool Viewer::comeBack() {
     return true;
 }
 
-void Viewer::waitForQueue() const {
-    const std::lock_guard lock(context_.queueMutex());
-    context_.queue().waitIdle();
-}
-
 void Viewer::say(const std::string& message) {
     panel_.status().message = message;
-    message_ = message;
+    message_line_.say(message);
     log_.say(message);
 }
 

@@ -1,6 +1,5 @@
 // The viewer's files: scenes, settings, pictures, shaders.
 #include "app/view/panel/measure.h"
-#include "app/view/settings/view_files.h"
 #include "app/view/shader_reload.h"
 #include "app/view/viewer.h"
 #include "engine/error.h"
@@ -13,14 +12,13 @@ void Viewer::takeScene() {
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
     renderer_.forgetScene();
-    probe_.forget();
+    pointing_.forget();
     controls_.letGo();
     is_new_view_ = before != nullptr;
     if (before == nullptr) { fade_ = {}; }  // there was nothing to jump from
-    viewpoints_.show(scenes_.get());
-    ruler_.close();
+    place_.show(scenes_.get());
     if (scenes_.get() == nullptr) { return; }  // it made way for the next one
-    frames_of_scene_ = 0;
+    kept_picture_.beginScene();
     said_there_ = false;
     notes_.remember(scenes_.name(), complaint);
 }
@@ -30,7 +28,7 @@ void Viewer::meetComing(FrameViews& views) {
     if (!there) { return; }
     const bool shows = scenes_.get() != nullptr;
     const Similarity drawn = shows ? scenes_.drawnFrom(state_.sceneFromRoom()) : *there;
-    if (!shows) { renderer_.aim(headset(), drawn, drawn_, views); }
+    if (!shows) { renderer_.aim(headset(), drawn, drawn_.get(), views); }
     scenes_.makeFrames(renderer_.framesWanted(headset(), compose(*there, inverse(drawn))));
 }
 
@@ -46,7 +44,7 @@ void Viewer::showOther() {
     const bool before = scenes_.drawsOther();
     scenes_.draw(other_asked_ != (held[kLeft] || held[kRight]));
     if (scenes_.drawsOther() == before) { return; }
-    probe_.forget();
+    pointing_.forget();
     log_.say(fmt::format("shows {}", scenes_.drawn()->name));
     for (const int h : {kLeft, kRight}) {
         if (held[static_cast<std::size_t>(h)]) { headset().input.pulse(h); }
@@ -63,31 +61,9 @@ void Viewer::openAndSave(const PanelRequests& requests) {
     if (requests.save && scenes_.get() != nullptr) {
         notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
     }
-    if (requests.load) { load(); }
-    if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
-    if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
-    if (requests.compare) { say(scenes_.toggleComparison()); }
+    requests_.follow(requests);
     if (requests.show_other) { other_asked_ = !other_asked_; }
     picture_asked_ = picture_asked_ || requests.take_picture;
-    if (requests.last_scene && scenes_.get() != nullptr) {
-        notes_.openLast(*scenes_.get(), [this](const std::string& scene) { scenes_.begin(scene); });
-    }
-    if (!requests.favourite.empty()) {
-        notes_.toggleFavourite(requests.favourite, [this] { panel_.listAnew(); });
-    }
-}
-
-void Viewer::load() {
-    files_.read("loading saved settings", [this, scene = scenes_.name()]() -> FileWorker::Done {
-        return [this, scene, saved = readSavedSettings(scene)] {
-            if (scene != scenes_.name()) { return; }  // another one came meanwhile
-            ViewSettings loaded = state_.settings();
-            say(takeSavedSettings(saved, loaded));
-            loaded.panel = state_.settings().panel;  // it is open: Load was just pressed
-            state_.set(loaded);
-            sayChange();
-        };
-    });
 }
 
 void Viewer::reloadShaders() {

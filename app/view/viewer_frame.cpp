@@ -1,11 +1,8 @@
 // One frame of the viewer, from where the eyes are to what the runtime is told to show.
 #include "app/view/viewer.h"
 
-#include "app/view/panel/message_picture.h"
 #include "app/view/placement/view_eyes.h"
-#include "app/view/wearer/follow_ground.h"
 #include "engine/error.h"
-#include "engine/places/standpoint.h"
 
 #include <algorithm>
 #include <utility>
@@ -16,10 +13,6 @@ namespace {
 
 // While the scene loads, unless a background is set.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
-constexpr double kMessageSeconds = 6.0;
-// A tour stays longer than in a window, where moving between viewpoints takes time: for five seconds.
-constexpr double kTourPace = ViewpointList::kRestSeconds / 5.0;
-
 }  // namespace
 
 void Viewer::settle() {
@@ -57,33 +50,33 @@ void Viewer::drawFrame() {
     }
     renderer_.meetDisplay(headset().session);
     files_.deliver();
-    if (canTakeScene(true) && hasKeptPicture()) { takeScene(); }
+    if (canTakeScene(true) && kept_picture_.isKept()) { takeScene(); }
     if (scenes_.isOtherMet()) { takeOther(); }
     FrameViews& views = *located;
-    room_from_head_ = views.room_from_head;
+    place_.setHead(views.room_from_head);
     const double step_seconds = headset().session.stepSeconds();
-    WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(),
-                     step_seconds, probes_seen_.hands};
-    wearer.measures = ruler_.isOpen();
-    wearer.ground_scene = std::move(probes_seen_.ground);
+    WearerNow wearer{headset().input.read(), views.room_from_head, headset().session.floorBelowMetres(),
+                     step_seconds, pointing_.hands()};
+    wearer.measures = place_.measures();
+    wearer.ground_scene = pointing_.takeGround();
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->floor) {
         wearer.scene_floor = SceneFloor{scene->up, *scene->floor};
     }
     controls_.update(wearer, panel_.inRoom(), state_);
-    measure(wearer.hands);
-    probeScene(wearer.floor_m.value_or(kUsualFloorMetres));
+    if (place_.measure(wearer.hands, panel_.inRoom(), pointing_, panel_.entry()) &&
+        !state_.settings().panel) {
+        togglePanel();
+    }
+    pointing_.ask(panel_.inRoom(), controls_, state_.settings(),
+                  state_.settings().follow_ground && !scenes_.drawsOther(), views.room_from_head,
+                  wearer.floor_m.value_or(kUsualFloorMetres));
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
         views.gazes =
             gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
     }
-    if (const int step = controls_.viewpointStep(); step != 0) {
-        viewpoints_.endTour();
-        goTo(viewpoints_.goBy(step));
-    }
-    // A wearer must not be moved smoothly, so the tour jumps, with a fade.
-    goTo(viewpoints_.pass(kTourPace * step_seconds, true));
+    if (place_.goBy(controls_.viewpointStep()) || place_.passTour(step_seconds)) { controls_.letGo(); }
     if (scenes_.other() != nullptr) {
         showOther();
     } else {
@@ -104,19 +97,19 @@ void Viewer::drawFrame() {
         views = *later;
     }
     // Last, since the panel and the window may change the settings.
-    const bool fits = prepareScene(views);
+    const bool fits = drawn_.prepare(headset(), views, window_.get());
     if (fits) { meetComing(views); }
-    onWindow(&MirrorWindow::acquire);
+    window_.acquire();
     const bool takes_picture = std::exchange(picture_asked_, false) && scenes_.get() != nullptr && fits;
     if (scenes_.get() != nullptr && fits) {
         meetOther();
         waiting_.passOver();
-        renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) {
+        renderer_.render(headset(), scenes_, drawn_.get(), window_.get(), [this](Commands& commands) {
             recordPanel(commands);
-            recordProbe(commands);
-            recordCopy(commands);
+            pointing_.record(commands, scenes_, renderer_, state_.sceneFromRoom());
+            kept_picture_.record(commands);
         });
-        ++frames_of_scene_;
+        kept_picture_.countFrame();
         for (LoadedScene* const scene : {scenes_.get(), scenes_.other()}) {
             if (scene != nullptr && scene->live) { sayLive(*scene); }
         }
@@ -125,10 +118,10 @@ void Viewer::drawFrame() {
     }
     // After a frame that was cut short, the view fades in, too.
     const bool is_new = std::exchange(is_new_view_, false) || renderer_.wasCutShort();
-    fade_.update(state_.sceneFromRoom(), room_from_head_, is_new, step_seconds);
+    fade_.update(state_.sceneFromRoom(), place_.roomFromHead(), is_new, step_seconds);
     headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     sayPicture(pictures_.takeOutcome());
-    onWindow(&MirrorWindow::show);
+    window_.show();
     showFrame(views);
     if (takes_picture) {
         pictures_.begin(
@@ -154,63 +147,6 @@ void Viewer::sayLive(LoadedScene& scene) {
         work->seconds, counters.frames_waited_for_loading));
 }
 
-bool Viewer::prepareScene(FrameViews& views) {
-    ViewSettings asked = state_.settings();
-    if (headset().inset) { asked.stereo.half_periphery = false; }         // as the renderer does
-    const bool begins = scenes_.get() == nullptr || options_.load_first;  // then what lacks is made at once
-    const ImagesFor images =
-        renderer_.imagesFor(headset(), begins ? drawn_ : asked, views, window_ != nullptr);
-    scenes_.expect(asked, renderer_.sizePx(asked), images);
-    const ViewSettings drawable = scenes_.drawable(asked);
-    const bool waits = drawable != asked;
-    ViewSettings resized = drawable;
-    resized.stereo.axes = asked.stereo.axes;
-    resized.resolution_scale = asked.resolution_scale;
-    const bool waits_for_method = resized != asked;
-    if (std::exchange(waits_for_method_, waits_for_method) && !waits_for_method) {
-        log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode)));
-    }
-    drawn_ = waits ? drawable : state_.settings();
-    const auto prepare = [&] {
-        renderer_.govern(headset(), drawn_, views, scenes_, window_.get());
-        if (scenes_.get() != nullptr) {
-            const Similarity drawn = scenes_.drawnFrom(state_.sceneFromRoom());
-            const std::optional<Similarity> there = scenes_.toRemake();
-            if (there && renderer_.knowsLens(headset(), state_.settings(), views)) {
-                scenes_.remakeFrames(
-                    renderer_.framesWanted(headset(), drawn, state_.settings(), views, *there));
-            }
-            renderer_.prepare(headset(), scenes_, drawn, drawn_, views);
-            scenes_.keepDrawn(drawn_, headset().images->sizePx());
-        }
-        state_.keepFitting(drawn_);
-    };
-    try {
-        try {
-            prepare();
-        } catch (const Error&) {
-            // Images that have just made way may hold what it lacks.
-            waitForQueue();
-            if (!headset().images_ahead.freeGone()) { throw; }
-            prepare();
-        }
-        return true;
-    } catch (const Error& error) {
-        if (scenes_.drawsOther()) {
-            say(scenes_.goOnAlone(error));
-            return false;
-        }
-        const std::string change = state_.changeSinceFitting();
-        if (change.empty()) { throw; }
-        say(fmt::format("{} does not fit: {}", change, error.what()));
-    }
-    scenes_.forgetDrawn();
-    state_.goBack();
-    drawn_ = state_.settings();
-    renderer_.govern(headset(), drawn_, views, scenes_, window_.get());
-    return false;
-}
-
 void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     for (const int h : {kLeft, kRight}) {
         if (panel_.inRoom().pulses(h)) { headset().input.pulse(h); }
@@ -218,7 +154,7 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     vignette_.update(state_.settings().vignette && controls_.isMoving(), wearer.step_seconds);
     std::array<std::optional<double>, 2> meets_m;
     for (std::size_t h = 0; h < 2 && !controls_.aimingHand(); ++h) {
-        if (probes_seen_.hands[h].meets) { meets_m[h] = probeMetres(*probes_seen_.hands[h].meets); }
+        meets_m[h] = pointing_.meetsMetres(static_cast<int>(h));
     }
     RoomSight sight;
     sight.eye = wearer.room_from_head.position;
@@ -227,47 +163,8 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     std::ranges::copy(controls_.things(sight.eye), std::back_inserter(sight.things));
     sight.arc = controls_.arc();
     sight.vignette_m = vignette_.widthMetres(views.eyes);
-    showMessage(sight, wearer.step_seconds);
+    message_line_.show(sight, headset().things.layout(), state_.settings().panel, wearer.step_seconds);
     headset().things.choose(sight);
-}
-
-void Viewer::probeScene(double feet_m) {
-    std::array<std::optional<ProbePath>, kProbePaths> paths;
-    if (state_.settings().follow_ground && !scenes_.drawsOther()) {
-        paths[kGroundPath] = groundAhead(room_from_head_, feet_m);
-    }
-    for (const int h : {kLeft, kRight}) {
-        if (!state_.settings().hands) { break; }  // hidden hands do not point
-        if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) {
-            paths[static_cast<std::size_t>(h)] = probeRay(*aim);
-        }
-    }
-    if (const Arc* const arc = controls_.arc(); controls_.aimingHand() && arc != nullptr) {
-        ProbePath& path = paths[static_cast<std::size_t>(*controls_.aimingHand())].emplace();
-        for (std::size_t i = 0; i < path.size(); ++i) {
-            path[i] = pointAlong(arc->points, static_cast<double>(i) / static_cast<double>(path.size() - 1));
-        }
-    }
-    probes_seen_ = probe_.ask(paths);
-}
-
-void Viewer::recordProbe(Commands& commands) {
-    const std::size_t eye = eyeOfPicture();
-    probe_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye),
-                  scenes_.drawnFrom(state_.sceneFromRoom()));
-}
-
-void Viewer::showMessage(RoomSight& sight, double step_seconds) {
-    const std::string message = std::exchange(message_, {});
-    message_seconds_ = state_.settings().panel ? 0.0 : std::max(message_seconds_ - step_seconds, 0.0);
-    if (!message.empty() && !state_.settings().panel) {
-        sight.message = drawMessage(message, headset().things.layout());
-        message_seconds_ = kMessageSeconds;
-    }
-    if (const auto gesture = message_seconds_ > 0.0 ? std::nullopt : first_steps_.update(step_seconds)) {
-        sight.message = drawGesture(*gesture, headset().things.layout());
-    }
-    sight.has_message = message_seconds_ > 0.0 || first_steps_.areShown();
 }
 
 void Viewer::renderWaiting() {
@@ -286,7 +183,7 @@ void Viewer::renderWaiting() {
         for (const int e : {kLeft, kRight}) { images->clear(commands, e, colour); }
     }
     recordPanel(commands);
-    waiting_.submit(window_ ? window_->drawn() : vk::Semaphore());
+    waiting_.submit(window_.drawn());
 }
 
 void Viewer::showFrame(const FrameViews& views) {
@@ -294,81 +191,9 @@ void Viewer::showFrame(const FrameViews& views) {
     if (headset().inset) { headset().inset_images->release(); }
     panel_.release(headset());
     headset().things.release();
-    submitFrame(views);
-}
-
-void Viewer::submitFrame(const FrameViews& views) {
-    std::vector<const char*> things;
-    std::string refusal;
-    const bool has_room = renderer_.seesThrough(state_.settings());
-    const auto isTaken = [&](const LayersWanted& wanted) {
-        headset().session.seeThrough(has_room && wanted.room);
-        xr::Layers layers(headset().session, wanted.most_things);
-        addEyes(layers, views, has_room && wanted.room);
-        headset().things.addBehindPanel(layers);
-        if (panel_hangs_ && wanted.panel) {
-            layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(),
-                            headset().panel_images);
-        }
-        headset().things.addBeforePanel(layers);
-        things = layers.quadNames();
-        try {
-            headset().session.endFrame(layers.list());
-        } catch (const Error& error) {
-            refusal = error.what();
-            return false;
-        }
-        return true;
-    };
-    if (isTaken({})) { return; }
-    std::optional<LayersWanted> taken = findTaken(things.size(), panel_hangs_, has_room, isTaken);
-    if (!taken && renderer_.dropDepth(headset())) {
-        log_.say("the runtime refuses depth; going on without depth");
-        if (isTaken({})) { return; }
-        taken = findTaken(things.size(), panel_hangs_, has_room, isTaken);
-    }
-    if (!taken) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures", refusal));
-    }
-    goOnWith(*taken, things, refusal);
-}
-
-void Viewer::goOnWith(const LayersWanted& taken, const std::vector<const char*>& things,
-                      const std::string& refusal) {
-    const auto say = [&](const std::string& lacks, const std::string& what) {
-        instance_.troubles().add(fmt::format("{}; going on without {}: it refuses {}", refusal, lacks, what));
-    };
-    if (taken.most_things < things.size()) {
-        say("hands, rays and the vignette", things[taken.most_things]);
-        headset().things.giveUp();
-    }
-    ViewSettings less = state_.settings();
-    if (panel_hangs_ && !taken.panel) {
-        say("the panel", "it");
-        less.panel = false;
-    }
-    if (less.passthrough && !taken.room) {
-        say("the room behind the scene", "it");
-        less.passthrough = false;
-    }
-    state_.set(less);
-}
-
-void Viewer::addEyes(xr::Layers& layers, const FrameViews& views, bool see_through) const {
-    const auto layerEye = [&](const EyeImages& images, const std::array<xr::EyeView, 2>& eyes, int shown_to) {
-        // If both eyes share a picture, both use the pose and angles of its eye.
-        const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
-        return images.layerEye(e, eyes[static_cast<std::size_t>(e)],
-                               options_.run.camera.near.value_or(kUsualNear));
-    };
-    const EyeImages& images = *headset().images;
-    const xr::LayerEye left = layerEye(images, views.pictures, kLeft),
-                       right = layerEye(images, views.pictures, kRight);
-    if (!headset().inset) { return layers.addEyes({left, right}, see_through); }
-    const EyeImages& insets = *headset().inset_images;
-    layers.addEyesAndInsets(
-        {left, right, layerEye(insets, *views.insets, kLeft), layerEye(insets, *views.insets, kRight)},
-        see_through);
+    const bool shares = scenes_.get() != nullptr && drawn_.get().showsOneEye();
+    submission_.end(headset(), views, panel_hangs_ ? &panel_.inRoom() : nullptr,
+                    shares ? std::optional<int>(drawn_.get().stereo.dominant) : std::nullopt);
 }
 
 }  // namespace binosplat

@@ -327,6 +327,11 @@ vk::PipelineShaderStageCreateFlags Context::fullSubgroups(std::uint32_t local_si
                : Flag::eRequireFullSubgroups | Flag::eAllowVaryingSubgroupSize;
 }
 
+void Context::waitForQueue() const {
+    const std::lock_guard lock(queue_mutex_);
+    queue_.waitIdle();
+}
+
 void Context::requireNoValidationMessages() const {
     const std::vector<std::string> messages = validationMessages();
     check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(),

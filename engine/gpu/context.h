@@ -66,6 +66,7 @@ public:
     [[nodiscard]] std::uint32_t queueFamily() const { return queue_family_; }
     // Hold this while using the queue, directly or through OpenXR: another thread may be uploading a scene.
     [[nodiscard]] QueueMutex& queueMutex() const { return queue_mutex_; }
+    void waitForQueue() const;
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
     // True if it is a CPU implementation, not a GPU.
     [[nodiscard]] bool isSoftware() const { return is_software_; }

@@ -47,10 +47,7 @@ void HeadsetConnection::lose(const std::string& why) {
     why_lost_ = why;
     is_gone_ = false;
     next_search_ = {};
-    {
-        const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();
-    }
+    context_.waitForQueue();
     headset_.reset();
 }
 
