@@ -5,7 +5,9 @@
 #include "engine/platform.h"
 
 #include <charconv>
+#include <cstdint>
 #include <memory>
+#include <string_view>
 
 namespace binosplat {
 
