@@ -16,13 +16,11 @@ namespace {
 
 constexpr float kWhatShare = 0.36f, kDrawnHighPx = 370.0f, kLabelStepPx = 52.0f;
 
-constexpr std::array<std::pair<const char*, const char*>, 7> kDeeds{{
+constexpr std::array<std::pair<const char*, const char*>, 5> kDeeds{{
     {"both grips", "turn the scene, enlarge or shrink it"},
     {"grip on the panel", "carry the panel"},
     {"trigger elsewhere", "with Teleport: to a place on the floor"},
-    {"bare hands", "pinch: click; fist: a grip"},
-    {"pinch elsewhere", "to a place on the floor"},
-    {"pinch, pull aside", "turn"},
+    {"bare hands, pinch", "to a place on the floor; pulled aside: turn"},
     {"pinch, palm to you", "hide the panel, or bring it before the eyes"},
 }};
 

@@ -316,7 +316,7 @@ TEST_CASE("a picture of a given-up frame is drawn in the next; a window that nob
         canvas.begin({}, 0.01);
         canvas.giveUp();
         REQUIRE(canvas.font().want("\xd7\x90"));
-        canvas.font().build();
+        canvas.makeLetters();
         canvas.takeLetters();
         canvas.begin({}, 0.01);
         canvas.giveUp();
