@@ -83,6 +83,13 @@ std::array<Hand, 2> Input::read() {
     const bool is_focused = actions_.sync();
     const bool was_at_rest = std::exchange(is_at_rest_, !is_focused);
     const bool is_new = std::exchange(times_focused_, session_.timesFocused()) != session_.timesFocused();
+    if (std::exchange(times_held_changed_, session_.timesHeldChanged()) != session_.timesHeldChanged()) {
+        const std::array<const ProfileBindings*, 2> held = this->held();
+        for (std::size_t h = 0; h < held.size(); ++h) {
+            // Every controller has a menu button, see bindings.cpp.
+            are_bare_[h] = held[h] != nullptr && held[h]->menu[h] == nullptr;
+        }
+    }
     if (!is_focused || is_new) {
         for (auto* holds : {&clicks_, &grabs_, &menus_, &presses_, &plays_}) {
             for (Hold& hold : *holds) { hold.forget(); }
@@ -104,8 +111,7 @@ void Input::readHand(std::size_t h, Hand& hand) {
     hand.joints = tracking_.locate(static_cast<int>(h));
     const std::optional<double> trigger = actions_.readNumber(trigger_, path);
     hand.clicks = clicks_[h].update(trigger);
-    // Every controller has a menu button, see bindings.cpp.
-    hand.is_bare = trigger && !actions_.readButton(menu_, path);
+    hand.is_bare = are_bare_[h];
     hand.grabs = grabs_[h].update(actions_.readNumber(squeeze_, path));
     // A pad that is touched but not pressed is at rest.
     if (actions_.readButton(stick_click_, path).value_or(true)) {

@@ -43,9 +43,11 @@ private:
     EyeGaze gaze_;
     std::array<OwnedSpace, 2> aim_spaces_, grip_spaces_;
     std::array<Hold, 2> clicks_, grabs_, menus_, presses_, plays_;
-    bool pulses_ = true;       // until one fails
-    bool tells_held_ = true;   // the same
-    int times_focused_ = 0;    // of the session, as of the last read()
+    bool pulses_ = true;      // until one fails
+    bool tells_held_ = true;  // the same
+    int times_focused_ = 0;   // of the session, as of the last read()
+    int times_held_changed_ = -1;
+    std::array<bool, 2> are_bare_{};
     bool is_at_rest_ = false;  // as of the last read()
 };
 

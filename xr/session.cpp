@@ -145,11 +145,15 @@ void Session::pollEvents() {
             case XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB:
                 told_for_ = 0;
                 break;
+            case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
+                ++times_held_changed_;
+                break;
             case XR_TYPE_EVENT_DATA_EVENTS_LOST: {
                 // Asks again for everything that lost events may have reported and that can be asked for.
                 // Whether somebody wears the headset cannot: from now on, movement shows it.
                 for (const std::uint32_t eye : {0u, 1u}) { hidden_meshes_.read(eye); }
                 told_for_ = 0;
+                ++times_held_changed_;
                 wearing_.forgetPresence();
                 const std::uint32_t count =
                     reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount;
@@ -157,7 +161,7 @@ void Session::pollEvents() {
                     fmt::format("the OpenXR runtime lost {} event{}", count, count == 1 ? "" : "s"));
                 break;
             }
-            default:  // a changed controller shows in its actions
+            default:
                 break;
         }
     }

@@ -85,6 +85,8 @@ public:
 
     // The number of times that this program has gained the input.
     [[nodiscard]] int timesFocused() const { return times_focused_; }
+    // How often hands may have taken something else up.
+    [[nodiscard]] int timesHeldChanged() const { return times_held_changed_; }
     [[nodiscard]] const std::string& whyEnded() const { return why_ended_; }
 
     [[nodiscard]] XrSession handle() const { return session_.get(); }
@@ -118,6 +120,7 @@ private:
     RefreshRate refresh_rate_;
     Passthrough passthrough_;
     int times_focused_ = 0;
+    int times_held_changed_ = 0;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;

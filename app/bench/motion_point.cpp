@@ -163,6 +163,7 @@ std::pair<double, double> MotionPoint::timeAndLimit(const FrameTime& limit, doub
     if (limit.unit == FrameTime::kMs) { return {ms, limit.amount}; }
     // As if neither the machine nor what is in view had changed since the first pose.
     const double now_ms = median({two_pass_ms_.begin(), two_pass_ms_.end()});
+    if (!(now_ms > 0.0)) { return {0.0, limit.amount}; }  // the device does not measure it
     return {ms * first_two_pass_ms_ / now_ms, limit.amount * first_two_pass_ms_};
 }
 

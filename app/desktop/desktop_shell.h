@@ -27,6 +27,8 @@ public:
     // Begins to load the scene. `context` must outlive the shell.
     DesktopShell(const ViewOptions& options, const ViewSettings& settings, const Context& context);
 
+    ~DesktopShell() { leaving_ = true; }  // an open dialog ends
+
     void run();
 
 private:

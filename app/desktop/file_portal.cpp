@@ -15,6 +15,8 @@ namespace {
 
 // libsystemd's sd-bus, where it is installed, so that the program needs no library for this alone.
 constexpr const char* kLibrary = "libsystemd.so.0";
+// How long a portal may take to begin: who closes the window waits for that.
+constexpr std::uint64_t kBeginMicroseconds = 5'000'000;
 constexpr std::uint64_t kWaitMicroseconds = 200'000;
 
 template <typename Function>
@@ -95,6 +97,9 @@ std::optional<ChosenFile> askPortalForFile(const std::function<bool()>& ends) {
         require(call<int(void**)>("sd_bus_open_user")(&opened), "reaching D-Bus");
         const std::unique_ptr<void, void* (*)(void*)> bus(opened,
                                                           call<void*(void*)>("sd_bus_flush_close_unref"));
+        require(
+            call<int(void*, std::uint64_t)>("sd_bus_set_method_call_timeout")(bus.get(), kBeginMicroseconds),
+            "setting a time limit");
         Answer answer;
         using Handler = int (*)(void*, void*, void*);
         require(

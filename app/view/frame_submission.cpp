@@ -40,11 +40,12 @@ void FrameSubmission::end(ConnectedHeadset& headset, const FrameViews& views, co
     if (!taken) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures", refusal));
     }
-    goOnWith(headset, *taken, has_panel, things, refusal);
+    goOnWith(headset, *taken, has_panel, has_room, things, refusal);
 }
 
 void FrameSubmission::goOnWith(ConnectedHeadset& headset, const LayersWanted& taken, bool has_panel,
-                               const std::vector<const char*>& things, const std::string& refusal) {
+                               bool has_room, const std::vector<const char*>& things,
+                               const std::string& refusal) {
     const auto say = [&](const std::string& lacks, const std::string& what) {
         troubles_.add(fmt::format("{}; going on without {}: it refuses {}", refusal, lacks, what));
     };
@@ -57,7 +58,7 @@ void FrameSubmission::goOnWith(ConnectedHeadset& headset, const LayersWanted& ta
         say("the panel", "it");
         less.panel = false;
     }
-    if (less.passthrough && !taken.room) {
+    if (has_room && !taken.room) {
         say("the room behind the scene", "it");
         less.passthrough = false;
     }

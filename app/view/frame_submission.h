@@ -23,7 +23,7 @@ public:
              std::optional<int> only_eye);
 
 private:
-    void goOnWith(ConnectedHeadset& headset, const LayersWanted& taken, bool has_panel,
+    void goOnWith(ConnectedHeadset& headset, const LayersWanted& taken, bool has_panel, bool has_room,
                   const std::vector<const char*>& things, const std::string& refusal);
     void addEyes(xr::Layers& layers, const ConnectedHeadset& headset, const FrameViews& views,
                  std::optional<int> only_eye, bool see_through) const;

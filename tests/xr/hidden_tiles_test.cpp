@@ -160,6 +160,10 @@ TEST_CASE(
     mask.finish();
     CHECK(view.hidden(mask, 1, next) == exact);
     CHECK(found == std::vector<std::pair<unsigned, bool>>{{256, true}, {112, false}, {176, false}});
+    for (unsigned px = 200; px < 260; ++px) {  // a slider that is dragged
+        CHECK(view.hidden(mask, 1, {px, px}).size() == view.hidden({px, px}).size());
+        mask.finish();
+    }
 }
 
 }  // SUITE(hidden_tiles)

@@ -95,7 +95,8 @@ std::array<std::span<const std::uint8_t>, 2> LensMask::update(const std::array<x
     std::erase_if(wanted, [&](glm::uvec2 px) { return found_.contains({px.x, px.y}); });
     if (!wanted.empty() && !coming_.valid()) {
         if (found_.size() > kMostSizes) {
-            std::erase_if(found_, [&](const auto& one) { return one.first != size; });
+            const Size kept = found_.contains(size) ? size : found_.rbegin()->first;
+            std::erase_if(found_, [&](const auto& one) { return one.first != kept; });
         }
         coming_ = std::async(std::launch::async, [find = find_, lens = lens_, wanted = std::move(wanted)] {
             Found found;

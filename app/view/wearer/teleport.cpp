@@ -47,11 +47,11 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
 
 bool Teleport::aims(int h, const WearerNow& now, const PanelInRoom& panel, bool is_chosen) const {
     const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
-    if (!hand.aim || now.measures || !(is_chosen || hand.is_bare)) { return false; }
+    if (!hand.aim || !(is_chosen || hand.is_bare)) { return false; }
     // While aiming, the ray may pass over the panel.
-    const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
+    const bool may_push = is_chosen && h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
     const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickPushed);
-    return pushed || panel.clicksElsewhere(h);
+    return pushed || (panel.clicksElsewhere(h) && !is_spent_[static_cast<std::size_t>(h)]);
 }
 
 bool Teleport::pullsAside(const WearerNow& now, ViewState& state) {
@@ -61,7 +61,7 @@ bool Teleport::pullsAside(const WearerNow& now, ViewState& state) {
     if (!now.hands[at].is_bare || std::abs(aside_m) < kPullMetres) { return false; }
     state.place(
         turnedBy(state.sceneFromRoom(), std::copysign(kTurnRadians, -aside_m), now.room_from_head.position));
-    return has_turned_[at] = true;
+    return is_spent_[at] = true;
 }
 
 void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
@@ -70,13 +70,13 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
     std::array<bool, 2> aim{};
     for (const int h : {kRight, kLeft}) {
         const auto at = static_cast<std::size_t>(h);
+        is_spent_[at] = now.hands[at].clicks && (is_spent_[at] || now.measures);
         aim[at] = aims(h, now, panel, is_chosen);
-        has_turned_[at] = has_turned_[at] && aim[at];
     }
     if (aiming_ && !aim[static_cast<std::size_t>(*aiming_)]) {
-        const xr::Hand& hand = now.hands[static_cast<std::size_t>(*aiming_)];
+        const auto at = static_cast<std::size_t>(*aiming_);
         // A hand that lost tracking did not let go.
-        if (hand.aim && !now.measures && before.target && !before.arc.is_blocked) {
+        if (now.hands[at].aim && !is_spent_[at] && before.target && !before.arc.is_blocked) {
             glm::dvec3 step_m = *before.target - now.room_from_head.position;
             step_m.y = 0.0;
             state.place(movedBy(state.sceneFromRoom(), step_m));
@@ -85,7 +85,7 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
     }
     for (const int h : {kRight, kLeft}) {
         const auto at = static_cast<std::size_t>(h);
-        if (aiming_ || !aim[at] || has_turned_[at]) { continue; }
+        if (aiming_ || !aim[at]) { continue; }
         aiming_ = h;
         pinched_at_ = now.hands[at].aim->position;
     }

@@ -21,6 +21,10 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
+    void letGo() override {
+        aiming_.reset();
+        aim_ = {};
+    }
     [[nodiscard]] std::optional<int> aimingHand() const override { return aiming_; }
     [[nodiscard]] const Arc* arc() const override { return aim_.target ? &aim_.arc : nullptr; }
     // The arc's end, which is red where the wearer cannot stand.
@@ -37,7 +41,7 @@ private:
     std::optional<int> aiming_;
     TeleportAim aim_;
     glm::dvec3 pinched_at_{0.0};
-    std::array<bool, 2> has_turned_{};  // in this pinch
+    std::array<bool, 2> is_spent_{};  // this click has turned the wearer, or measured
 };
 
 }  // namespace binosplat

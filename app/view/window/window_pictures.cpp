@@ -81,15 +81,17 @@ bool WindowPictures::isFree() const { return acquired_fence_.getStatus() == vk::
 
 void WindowPictures::acquire() {
     std::erase_if(old_, [](auto& old) { return --old.second < 0; });
+    bool is_new = false;  // then one picture is shown with it, even if the window's size goes on changing
     if (making_.valid()) {
         if (!isReady(making_)) { return; }
         take(making_.get());
+        is_new = !is_stale_;
     }
     // A promised image must be free before the next one is acquired, but the headset does not wait for it.
     if (hold_ == Hold::kPromised && isFree()) { takePromised(); }
     if (hold_ == Hold::kPromised) { return; }
     // Not every display reports that its window was resized (Wayland does not).
-    is_stale_ = is_stale_ || window_px_ != window_size_px_();
+    is_stale_ = is_stale_ || (!is_new && window_px_ != window_size_px_());
     if (is_stale_) {
         hold_ = Hold::kNone;
         const glm::uvec2 before_px = std::exchange(window_px_, window_size_px_());

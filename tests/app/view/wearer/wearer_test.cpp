@@ -224,6 +224,36 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
     CHECK_FALSE(aimTeleport({{1, 0, 0, 0}, {0.0, 1.7, 0.0}}, 1.6).target.has_value());
 }
 
+TEST_CASE("a click that measures does not teleport, nor does a stick beside bare hands") {
+    Teleport teleport;
+    ViewState state;
+    PanelInRoom panel({960, 768}, 1.0);
+    WearerNow now;
+    const auto aiming = [&] {
+        panel.update(now.hands, false);
+        teleport.update(now, panel, state);
+        return teleport.aimingHand().value_or(-1);
+    };
+    xr::Hand& right = now.hands[kRight];
+    right.aim = Pose{{1, 0, 0, 0}, {0.2, 0.4, 0.3}};
+    right.clicks = right.is_bare = true;
+    now.measures = true;
+    CHECK(aiming() == -1);
+    now.measures = false;  // that was the second place
+    CHECK(aiming() == -1);
+    right.clicks = false;
+    CHECK(aiming() == -1);
+    right.clicks = true;
+    CHECK(aiming() == kRight);
+    teleport.letGo();
+    CHECK(teleport.arc() == nullptr);
+    right.clicks = false;
+    now.hands[kLeft] = right;
+    now.hands[kLeft].stick.y = 1.0;  // a gamepad's
+    CHECK(aiming() == -1);
+    CHECK(state.sceneFromRoom() == Similarity());
+}
+
 // A stair goes up at z = 1, and from z = 2 on a table stands on it.
 std::vector<glm::dvec3> stairAndTable() {
     std::vector<glm::dvec3> ground;
