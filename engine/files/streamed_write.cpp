@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostDepth = 48;  // readers limit it, too
-constexpr float kReach = 2.0f;  // in standard deviations: a leaf's box holds the visible part of its splats
+constexpr float kReach =
+    2.0f;  // in standard deviations: a leaf's box holds the visible part of its finest splats
 constexpr float kBeyond = std::numeric_limits<float>::max();
 constexpr double kLeastSeen = 1.0;  // in pixels: splats that show less are taken to be like the others
 
@@ -151,9 +152,11 @@ std::uint32_t StreamedWriter::leafOf(const glm::vec3& position) const {
     return node;
 }
 
-void StreamedWriter::bound(std::uint32_t leaf, const Scene& scene, std::uint32_t splat) {
+// Of coarser levels only the centres count: few large splats reach far, and a leaf would seem to be as large.
+void StreamedWriter::bound(std::uint32_t leaf, const Scene& scene, std::uint32_t splat, bool is_finest) {
     const float thickness = scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f;
-    const float reach = kReach * std::max({scene.scales[splat].x, scene.scales[splat].y, thickness});
+    const float reach =
+        is_finest ? kReach * std::max({scene.scales[splat].x, scene.scales[splat].y, thickness}) : 0.0f;
     nodes_[leaf].low = glm::min(nodes_[leaf].low, scene.positions[splat] - reach);
     nodes_[leaf].high = glm::max(nodes_[leaf].high, scene.positions[splat] + reach);
 }
@@ -167,7 +170,7 @@ void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const 
     for (std::uint32_t splat = 0; splat < scene.size(); ++splat) {
         const std::uint32_t leaf = leafOf(scene.positions[splat]);
         leaves[leaf].push_back(splat);
-        bound(leaf, scene, splat);
+        bound(leaf, scene, splat, level == 0);
     }
     std::vector<std::uint32_t> chunk;
     std::size_t written = 0;

@@ -67,7 +67,7 @@ private:
         SplatError error;
     };
     struct Node {
-        glm::vec3 low{0.0f}, high{0.0f};  // of what its splats reach, at all levels
+        glm::vec3 low{0.0f}, high{0.0f};  // of what its finest splats reach
         // -1 for a leaf; otherwise splats at or beyond `cut` go to the second child
         int axis = -1;
         float cut = 0.0f;
@@ -78,7 +78,7 @@ private:
 
     std::uint32_t cut(std::span<const glm::vec3> centres, std::span<std::uint32_t> splats, int depth);
     std::uint32_t leafOf(const glm::vec3& position) const;
-    void bound(std::uint32_t leaf, const Scene& scene, std::uint32_t splat);
+    void bound(std::uint32_t leaf, const Scene& scene, std::uint32_t splat, bool is_finest);
     glm::mat2x3 boundParents(std::uint32_t node);
     void collectBlocks(std::uint32_t node, std::uint64_t most, bool within, Blocks& blocks) const;
     [[nodiscard]] std::vector<double> errorsOf(const Node& leaf) const;

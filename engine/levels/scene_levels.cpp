@@ -10,6 +10,9 @@ namespace binosplat {
 
 namespace {
 
+// A level of more splats than this part of a block's is made in blocks, and thinned out from the finest.
+constexpr std::uint64_t kPartOfBlock = 16;
+
 class LevelMaker {
 public:
     LevelMaker(const Context& context, const LevelSettings& settings, StreamedWriter& writer)
@@ -19,6 +22,7 @@ public:
         std::vector<Eye> eyes;
         int steps = kFitSteps;
         std::size_t errors_every = 1;
+        gpu::uint side_of_few_px = 0;
     };
 
     // Writes levels `first` (unless it has been written) to `last`; `scene` is level `first`. Returns level
@@ -36,7 +40,7 @@ public:
         if (first == 0) { writer_.add(0, scene, {}, 0, part(0, 0.0, 0.5)); }
         if (last == first) { return {}; }
         ThinOut thin_out(context_, scene, std::move(judging.eyes), settings_.near, part(first, 0.5, 0.5),
-                         judging.steps);
+                         judging.steps, judging.side_of_few_px);
         Scene thin;
         for (std::size_t level = first + 1; level <= last; ++level) {
             thin = thin_out.keep(std::max<std::uint64_t>(scene.size() >> (level - first), 1),
@@ -92,7 +96,7 @@ void writeSceneLevels(const Context& context, const SceneParts& parts, const Lev
         return;
     }
     std::size_t of_blocks = 0;  // the last level made in blocks
-    while (of_blocks < last && splats >> of_blocks > settings.block_splats) { ++of_blocks; }
+    while (of_blocks < last && splats >> of_blocks > settings.block_splats / kPartOfBlock) { ++of_blocks; }
     constexpr double kShareOfBlocks = 0.95;
     for (std::size_t i = 0; i < blocks.count; ++i) {
         const auto done = [&](double share) {
@@ -103,8 +107,10 @@ void writeSceneLevels(const Context& context, const SceneParts& parts, const Lev
         };
         const Scene block = spill.read(i);
         std::vector<Eye> eyes = eyesOnto(block, settings.eyes, settings.block_eyes, settings.block_side_px);
-        const Scene thin = maker.make(
-            block, 0, of_blocks, {std::move(eyes), settings.block_steps, settings.block_errors_every}, done);
+        const Scene thin = maker.make(block, 0, of_blocks,
+                                      {std::move(eyes), settings.block_steps, settings.block_errors_every,
+                                       settings.block_side_of_few_px},
+                                      done);
         if (i == 0) { scene = pickSplats(thin, {}); }
         appendSplats(scene, thin);
     }

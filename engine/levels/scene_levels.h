@@ -18,6 +18,8 @@ struct LevelSettings {
     std::uint64_t block_splats = 1024 * 1024;
     std::size_t block_eyes = 8;
     gpu::uint block_side_px = kJudgingSidePx;
+    // Levels of few splats are fitted in smaller pictures: in such they are shown.
+    gpu::uint block_side_of_few_px = kJudgingSidePx / 2;
     int block_steps = 4;
     std::size_t block_errors_every = 2;  // errors of levels are measured from every other eye
 };

@@ -17,6 +17,9 @@ namespace {
 // Splats that stay become wider by their share to this power: where few of many stay, they cover more. Those
 // that cover all that went would blur. No share counts as less than kLeastShare.
 constexpr double kWidening = -1.0 / 3.0, kLeastShare = 0.02;
+// Where a smaller share stays, splats are merged: few chosen ones leave gaps, or blur if they are wide
+// enough.
+constexpr double kFew = 0.3;
 // What is added to each weight, in terms of their mean: who steps nearer sees what the eyes hardly see.
 constexpr double kAnyWeight = 0.1;
 // A step of the fit looks from every fourth eye: all eyes in four steps, each of which goes nearly as far as
@@ -32,7 +35,6 @@ constexpr double kLeastHold = 1e-3;
 // Mesa's software device ends the loops of a thread after 65,535 rounds of all of them, that is after some
 // 54,000 pairs if each splat meets every cell of its tile. Pictures of more are taken larger.
 constexpr gpu::uint kMostPairs = 48'000, kMostSidePx = 2048;
-constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
 
 // The sums of one splat, in pixels.
 struct SplatSums {
@@ -98,11 +100,10 @@ std::vector<Eye> eyesOf(const std::vector<View>& views, gpu::uint side_px) {
     return eyes;
 }
 
-Eye enlarge(const Eye& eye, double by) {
+Eye scaleTo(const Eye& eye, const glm::uvec2& size_px) {
     const Intrinsics& k = eye.intrinsics;
-    return {eye.world_from_camera,
-            {by * k.fx, by * k.fy, by * k.cx, by * k.cy},
-            glm::uvec2(by * glm::dvec2(eye.size_px))};
+    const glm::dvec2 by = glm::dvec2(size_px) / glm::dvec2(eye.size_px);
+    return {eye.world_from_camera, {by.x * k.fx, by.y * k.fy, by.x * k.cx, by.y * k.cy}, size_px};
 }
 
 std::vector<std::uint32_t> wholeOf(std::size_t splats) {
@@ -134,50 +135,52 @@ std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::siz
 }
 
 ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near,
-                 const Progress& progress, int steps)
+                 const Progress& progress, int steps, gpu::uint side_of_few_px)
     : context_(context),
       scene_(scene),
-      eyes_(std::move(eyes)),
+      wanted_{std::move(eyes), {}},
       near_(near),
       steps_(steps),
-      meter_(context),
-      wanted_(eyes_.size()) {
-    weigh(progress);
+      side_of_few_px_(side_of_few_px),
+      meter_(context) {
+    weights_.resize(scene_.size());
+    look(wanted_, &weights_, progress);
+    const std::int64_t all = std::accumulate(weights_.begin(), weights_.end(), std::int64_t{0});
+    const auto any =
+        static_cast<std::int64_t>(kAnyWeight * static_cast<double>(all) / static_cast<double>(scene_.size()));
+    for (std::int64_t& weight : weights_) { weight += any; }
 }
 
 // Pictures with too full tiles wait for the next round, with twice the pixels a side, where a splat's weight
 // counts a quarter.
-void ThinOut::weigh(const Progress& progress) {
+void ThinOut::look(Wanted& wanted, std::vector<std::int64_t>* weights, const Progress& progress) {
     const GpuScene whole(context_, scene_);
-    weights_.assign(scene_.size(), 0);
-    std::vector<std::size_t> left(eyes_.size());
+    wanted.pictures.resize(wanted.eyes.size());
+    std::vector<std::size_t> left(wanted.eyes.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     for (std::int64_t area = 1; !left.empty(); area *= 4) {
         meter_.show(whole, false);
         std::vector<std::size_t> too_full;
         for (const std::size_t i : left) {
-            meter_.render(eyes_[i], near_, wanted_[i]);
-            const Eye larger = enlarge(eyes_[i], 2.0);
+            meter_.render(wanted.eyes[i], near_, wanted.pictures[i]);
+            const Eye larger = scaleTo(wanted.eyes[i], 2u * wanted.eyes[i].size_px);
             const bool may_grow =
                 context_.isSoftware() && std::max(larger.size_px.x, larger.size_px.y) <= kMostSidePx;
             if (may_grow && meter_.fullestTile() > kMostPairs) {
-                eyes_[i] = larger;
+                wanted.eyes[i] = larger;
                 too_full.push_back(i);
                 continue;
             }
-            meter_.addSums(wanted_[i]);
-            if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
-        }
-        const std::vector<std::int64_t> sums = meter_.sums();
-        for (std::size_t i = 0; i < weights_.size(); ++i) {
-            weights_[i] += sums[i * gpu::kErrorSums + gpu::kSumWeight] / area;
+            if (weights != nullptr) { meter_.addSums(wanted.pictures[i]); }
+            if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(wanted.eyes.size())); }
         }
         left = std::move(too_full);
+        if (weights == nullptr) { continue; }
+        const std::vector<std::int64_t> sums = meter_.sums();
+        for (std::size_t i = 0; i < weights->size(); ++i) {
+            (*weights)[i] += sums[i * gpu::kErrorSums + gpu::kSumWeight] / area;
+        }
     }
-    const std::int64_t all = std::accumulate(weights_.begin(), weights_.end(), std::int64_t{0});
-    const auto any =
-        static_cast<std::int64_t>(kAnyWeight * static_cast<double>(all) / static_cast<double>(scene_.size()));
-    for (std::int64_t& weight : weights_) { weight += any; }
 }
 
 // Along a curve through the scene each splat adds its share, and one stays wherever these add up to another
@@ -198,10 +201,9 @@ std::vector<std::uint32_t> ThinOut::choose(std::uint64_t count) const {
     return kept;
 }
 
-Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {
+Scene ThinOut::chosen(std::uint64_t count) const {
     const std::vector<std::uint32_t> chosen = choose(count);
     Scene scene = pickSplats(scene_, chosen);
-    if (scene.size() == 0 || scene.size() == scene_.size()) { return scene; }
     const double factor = factorFor(weights_, count);
     for (std::size_t i = 0; i < scene.size(); ++i) {
         const double share = std::max(shareOf(weights_[chosen[i]], factor), kLeastShare);
@@ -209,20 +211,47 @@ Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {
         scene.scales[i] *= wider;
         if (scene.isGaussian3d()) { scene.thicknesses[i] *= wider; }
     }
-    fit(scene, progress);
     return scene;
 }
 
-void ThinOut::fit(Scene& scene, const Progress& progress) {
+Scene ThinOut::merged(std::uint64_t count) {
+    if (!merger_ || merger_->scene().size() < count) {
+        merger_ = std::make_unique<SplatMerger>(scene_, weights_);
+    }
+    merger_->reduceTo(count);
+    return merger_->scene();
+}
+
+const ThinOut::Wanted& ThinOut::wantedOfFew() {
+    if (side_of_few_px_ == 0) { return wanted_; }
+    if (wanted_of_few_.eyes.empty()) {
+        for (const Eye& eye : wanted_.eyes) {
+            wanted_of_few_.eyes.push_back(scaleTo(eye, glm::min(eye.size_px, glm::uvec2(side_of_few_px_))));
+        }
+        look(wanted_of_few_, nullptr, {});
+    }
+    return wanted_of_few_;
+}
+
+Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {
+    if (count >= scene_.size()) { return scene_; }
+    const auto all = static_cast<double>(scene_.size());
+    const bool are_few = static_cast<double>(count) < kFew * all;
+    Scene scene = are_few ? merged(count) : chosen(count);
+    fit(scene, are_few ? wantedOfFew() : wanted_, progress);
+    return scene;
+}
+
+void ThinOut::fit(Scene& scene, const Wanted& wanted, const Progress& progress) {
     Picture picture;
     for (int step = 0; step < steps_; ++step) {
         const GpuScene shown(context_, scene);
         meter_.show(shown, true);
-        for (std::size_t i = static_cast<std::size_t>(step) % kParts; i < eyes_.size(); i += kParts) {
-            meter_.render(eyes_[i], near_, picture);
-            meter_.addSums(picture, &wanted_[i]);
+        for (std::size_t i = static_cast<std::size_t>(step) % kParts; i < wanted.eyes.size(); i += kParts) {
+            meter_.render(wanted.eyes[i], near_, picture);
+            meter_.addSums(picture, &wanted.pictures[i]);
             if (progress) {
-                progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / steps_);
+                progress((step + static_cast<double>(i) / static_cast<double>(wanted.eyes.size())) / steps_);
             }
         }
         takeStep(scene, meter_.sums());
@@ -235,9 +264,9 @@ double ThinOut::errorOf(const Scene& scene) {
     Picture picture;
     double sum = 0.0;
     std::size_t values = 0;
-    for (std::size_t i = 0; i < eyes_.size(); ++i) {
-        meter_.render(eyes_[i], near_, picture);
-        const std::vector<float> is = meter_.pixels(picture), should = meter_.pixels(wanted_[i]);
+    for (std::size_t i = 0; i < wanted_.eyes.size(); ++i) {
+        meter_.render(wanted_.eyes[i], near_, picture);
+        const std::vector<float> is = meter_.pixels(picture), should = meter_.pixels(wanted_.pictures[i]);
         for (std::size_t at = 0; at < is.size(); ++at) {
             if (at % 4 == 3) { continue; }
             const double off = static_cast<double>(is[at]) - static_cast<double>(should[at]);
@@ -252,10 +281,10 @@ std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progres
     const GpuScene shown(context_, scene);
     meter_.show(shown, false);
     Picture picture;
-    for (std::size_t i = 0; i < eyes_.size(); i += every) {
-        meter_.render(eyes_[i], near_, picture);
-        meter_.addSums(picture, &wanted_[i]);
-        if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
+    for (std::size_t i = 0; i < wanted_.eyes.size(); i += every) {
+        meter_.render(wanted_.eyes[i], near_, picture);
+        meter_.addSums(picture, &wanted_.pictures[i]);
+        if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(wanted_.eyes.size())); }
     }
     std::vector<SplatError> errors(scene.size());
     const std::vector<std::int64_t> sums = meter_.sums();

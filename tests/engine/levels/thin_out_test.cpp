@@ -60,6 +60,24 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(of_close >= 26.0);
 }
 
+TEST_CASE_FIXTURE(Gpu,
+                  "a tenth of a scene's splats shows it without holes, in large pictures and small ones") {
+    const Scene scene = makeBuiltin("builtin:atelier", 12000);
+    const double near = usualNear(scene);
+    const std::size_t kept = scene.size() / 10;
+    const auto qualityOf = [&](gpu::uint side_px, gpu::uint side_of_few_px) {
+        ThinOut thin_out(context(), scene, standingEyes(scene, 12, 0, 96), near, {}, 4, side_of_few_px);
+        const Scene thin = thin_out.keep(kept);
+        REQUIRE(thin.size() == kept);
+        ThinOut elsewhere(context(), scene, standingEyes(scene, 6, 30, side_px), near);
+        return decibels(elsewhere.errorOf(thin));
+    };
+    const double of_large = qualityOf(96, 0), of_small = qualityOf(32, 0), of_few = qualityOf(32, 32);
+    MESSAGE(of_large << " dB at 96x96, " << of_small << " dB at 32x32, " << of_few << " dB if fitted there");
+    CHECK(of_large >= 20.0);
+    CHECK(of_few >= of_small + 0.5);
+}
+
 TEST_CASE_FIXTURE(Gpu, "what each splat is off by adds up to what the pictures are") {
     const Scene scene = makeBuiltin("builtin:atelier", 4000);
     ThinOut thin_out(context(), scene, standingEyes(scene, 6, 0, 64), usualNear(scene));
