@@ -61,6 +61,27 @@ TEST_CASE(
     CHECK(filesIn(folder.file("")).size() == 2 * files.size());
 }
 
+TEST_CASE("large splats of a coarser level do not make a leaf's box larger") {
+    const Folder folder;
+    const Scene scene = makeBuiltin("builtin:slanted-wall");
+    Scene large = pickSplats(scene, std::vector<std::uint32_t>{0, 700, 1600});
+    for (glm::vec2& scale : large.scales) { scale = glm::vec2(50.0f); }
+    const auto boxesWith = [&](const std::string& name, const Scene& coarse) {
+        StreamedWriter writer(folder.file(name) + "/lod-meta.json", {.leaf_splats = 250});
+        writer.cutLeaves(scene.positions);
+        writer.add(0, scene);
+        writer.add(1, coarse);
+        writer.finish();
+        const std::string text = textIn(folder.file(name) + "/lod-meta.json");
+        std::vector<glm::vec3> corners;
+        for (const LodLeaf& leaf : parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json").tree) {
+            corners.insert(corners.end(), {leaf.low, leaf.high});
+        }
+        return corners;
+    };
+    CHECK(boxesWith("large", large) == boxesWith("small", pickSplats(scene, std::vector<std::uint32_t>{0})));
+}
+
 TEST_CASE("an environment is a chunk of its own that every level shows, and no leaf holds") {
     const Folder folder;
     const Scene scene = makeBuiltin("builtin:slanted-wall");
