@@ -29,9 +29,23 @@ struct SeenJoint {
     double radius, depth;  // the depth is in texels, too
 };
 
+// `light` is the brightness times alpha.
 struct Hit {
-    double depth = std::numeric_limits<double>::infinity(), brightness = 0.0, alpha = 0.0;
+    double depth = std::numeric_limits<double>::infinity(), light = 0.0, alpha = 0.0;
 };
+
+Hit over(const Hit& front, const Hit& back) {
+    return {front.alpha > 0.5 ? front.depth : back.depth, front.light + (1.0 - front.alpha) * back.light,
+            front.alpha + (1.0 - front.alpha) * back.alpha};
+}
+
+// Where two bones meet, one passes into the other over some texels, so that there is no staircase.
+Hit join(const Hit& a, const Hit& b) {
+    const double b_is_front = std::clamp((a.depth - b.depth) / kRimTexels + 0.5, 0.0, 1.0);
+    const Hit with_a = over(a, b), with_b = over(b, a);
+    return {b_is_front > 0.5 ? with_b.depth : with_a.depth, glm::mix(with_a.light, with_b.light, b_is_front),
+            with_a.alpha};
+}
 
 void drawBone(const SeenJoint& a, const SeenJoint& b, const glm::uvec2& size_px, std::vector<Hit>& hits) {
     const double reach = std::max(a.radius, b.radius) + kRimTexels;
@@ -51,10 +65,7 @@ void drawBone(const SeenJoint& a, const SeenJoint& b, const glm::uvec2& size_px,
             const double facing_eye = std::sqrt(std::max(0.0, 1.0 - aside * aside / (radius * radius)));
             const double depth = glm::mix(a.depth, b.depth, t) - radius * facing_eye;
             Hit& hit = hits[std::size_t{y} * size_px.x + x];
-            // A rim is translucent: what was drawn behind it shows through.
-            if (alpha == 1.0 ? depth < hit.depth : hit.alpha < 1.0) {
-                hit = {depth, 0.3 + 0.7 * facing_eye, std::max(alpha, hit.alpha)};
-            }
+            hit = join(hit, {depth, alpha * (0.3 + 0.7 * facing_eye), alpha});
         }
     }
 }
@@ -89,7 +100,8 @@ TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const gl
     }
     picture.texels.reserve(hits.size());
     for (const Hit& hit : hits) {
-        picture.texels.push_back(texelOf(hit.brightness * kSkinLight, hit.alpha, layout));
+        const double brightness = hit.alpha > 0.0 ? hit.light / hit.alpha : 0.0;
+        picture.texels.push_back(texelOf(brightness * kSkinLight, hit.alpha, layout));
     }
     return picture;
 }
