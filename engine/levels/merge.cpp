@@ -196,8 +196,8 @@ void SplatMerger::merge(std::uint32_t into, std::uint32_t other) {
     const double densest = new_part * std::max(opacity_a, opacity_b) + (1.0 - new_part) * both;
     glm::dvec3 scales = glm::sqrt(found.variances);
     const double own = 2.0 * std::numbers::pi * scales.x * scales.y;
-    const double opacity = std::clamp(area / std::max(own, 1e-30), static_cast<double>(kFaintest),
-                                      std::min(densest, static_cast<double>(kDensest)));
+    const double least = kFaintest, most = std::max(least, std::min(densest, static_cast<double>(kDensest)));
+    const double opacity = std::clamp(area / std::max(own, 1e-30), least, most);
     scales *= std::max(1.0, std::sqrt(area / std::max(own * opacity, 1e-30)));
     scene_.positions[into] = glm::vec3(a.mean + share * (b.mean - a.mean));
     scene_.rotations[into] = glm::quat(glm::normalize(glm::quat_cast(found.axes)));

@@ -64,6 +64,11 @@ TEST_CASE("what shows little is merged first, and what lies at the same place be
     REQUIRE(same_place.scene().size() == 1);
     CHECK(same_place.scene().scales[0].x == doctest::Approx(0.1));
     CHECK(same_place.scene().opacities[0] >= 0.5f);
+
+    for (float& opacity : scene.opacities) { opacity = 0.001f; }
+    SplatMerger faint(scene, std::vector<std::int64_t>(4, 1));
+    faint.reduceTo(1);
+    CHECK(faint.scene().opacities[0] == kFaintest);
 }
 
 TEST_CASE("Gaussians keep the spread of their centres along all axes") {
