@@ -27,6 +27,7 @@ PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.765 {1}\npress righ
 STATES = {
     "scenes": ("room2.ply --load-first", LAST + PAGE.format(-0.535, -0.887)),
     "method": ("room2.ply --load-first", LAST + PAGE.format(-0.447, -0.931)),
+    "help": ("room2.ply --load-first", LAST + PAGE.format(-0.359, -0.975)),
     "loading": ("builtin:atelier", LAST),
     "scene": ("builtin:fence --load-first", LAST),
     "headset_off": ("builtin:fence --load-first", LAST + "at 3 worn off\n"),
