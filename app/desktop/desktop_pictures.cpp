@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 namespace binosplat {
@@ -41,10 +40,7 @@ DesktopPictures::DesktopPictures(const Context& context)
 void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
     const bool fits = size_px.x <= memory_px_.x && size_px.y <= memory_px_.y;
     if (fits && images_.at(eyes - 1)) { return; }
-    {
-        const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();
-    }
+    context_.waitForQueue();
     using Usage = vk::ImageUsageFlagBits;
     if (!fits) { memory_px_ = size_px; }
     for (std::size_t e = 0; e < images_.size(); ++e) {

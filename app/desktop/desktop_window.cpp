@@ -254,10 +254,7 @@ bool DesktopWindow::show(const std::function<void(vk::Image window, vk::Semaphor
             if (attempt > 0) {
                 throw Error(ExitCode::kNoDevice, fmt::format("the display is gone: {}", error.what()));
             }
-            {
-                const std::lock_guard lock(context_.queueMutex());
-                context_.queue().waitIdle();
-            }
+            context_.waitForQueue();
             makePictures();
         }
     }

@@ -2,12 +2,9 @@
 #include "app/options/option_table.h"
 
 #include "app/scores/flip.h"
-#include "engine/error.h"
 #include "engine/scene/scene.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace binosplat {
 
