@@ -208,21 +208,14 @@ Knobs KnobModel::bestAsUsual(double ratio, const KnobLimits& limits) const {
 
 Knobs KnobModel::bestBy(const Terms& shares, double most_ms, const KnobLimits& limits) const {
     std::optional<Knobs> best;
-    Knobs quickest{limits.least_scale * limits.whole, std::min(kLastBoundDb, limits.most_bound_db)};
-    const auto consider = [&](const Knobs& knobs) {
-        const bool is_better = !best || expectedError(knobs) < expectedError(*best);
-        if (is_better && msBy(shares, knobs) <= most_ms) { best = knobs; }
-    };
+    Knobs quickest{limits.whole, std::min(kLeastBoundDb, limits.most_bound_db)};
     for (double tenths = 10.0; tenths >= 10.0 * limits.least_scale - 1e-6; --tenths) {
-        const double scale = governedScale(limits.whole, tenths);
-        for (double bound_db = limits.most_bound_db;
-             bound_db >= std::min(kLeastBoundDb, limits.most_bound_db); --bound_db) {
-            consider({scale, bound_db});
+        quickest.scale = governedScale(limits.whole, tenths);
+        for (double bound_db = limits.most_bound_db; bound_db >= quickest.bound_db; --bound_db) {
+            const Knobs knobs{quickest.scale, bound_db};
+            const bool is_better = !best || expectedError(knobs) < expectedError(*best);
+            if (is_better && msBy(shares, knobs) <= most_ms) { best = knobs; }
         }
-        quickest.scale = scale;
-    }
-    for (double bound_db = kLeastBoundDb - 1.0; !best && bound_db >= quickest.bound_db; --bound_db) {
-        consider({quickest.scale, bound_db});
     }
     return best.value_or(quickest);
 }

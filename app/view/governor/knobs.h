@@ -36,8 +36,7 @@ inline double governedScale(double whole, double tenths) { return std::round(10.
 
 class KnobModel {
 public:
-    // A lower bound is used only when the resolution cannot go any lower.
-    static constexpr double kLeastBoundDb = 26.0, kLastBoundDb = 20.0;
+    static constexpr double kLeastBoundDb = 20.0;
 
     void forget() { *this = {}; }
     void add(const Knobs& knobs, const KnobFrame& frame);
