@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <utility>
 
 namespace binosplat {
@@ -39,12 +38,6 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas, EventWi
 }
 
 MirrorWindow::~MirrorWindow() {
-    {
-        const std::lock_guard lock(context_.queueMutex());
-        try {
-            context_.device().waitIdle();
-        } catch (const vk::SystemError&) {}  // a lost device has no work in flight
-    }
     pictures_.reset();  // before the window
     events_.close();
 }

@@ -35,10 +35,11 @@ WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surf
 }
 
 WindowPictures::~WindowPictures() {
-    if (hold_ != Hold::kPromised) { return; }
     try {
+        context_.waitForQueue();
+        if (hold_ != Hold::kPromised) { return; }
         static_cast<void>(context_.device().waitForFences(*acquired_fence_, VK_TRUE, kLongestWaitNs));
-    } catch (const vk::SystemError&) {}
+    } catch (const vk::SystemError&) {}  // a lost device has no work in flight
 }
 
 WindowPictures::Made WindowPictures::make() const {
