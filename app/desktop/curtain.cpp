@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace binosplat {
 
@@ -25,24 +24,35 @@ int lineIn(const EyePart& part, double share) {
 
 }  // namespace
 
-Curtain::Curtain(const Context& context) : inks_{makeInk(context), makeInk(context)} {}
+Curtain::Curtain(const Context& context, const FrameLog& log)
+    : log_(log), inks_{makeInk(context), makeInk(context)} {}
 
 double Curtain::shareAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px) {
     const EyePart part = partAt(parts, place_px).value_or(parts.front());
     return (place_px.x - part.at_px.x) / part.size_px.x;
 }
 
-bool Curtain::isLeftOf(const std::vector<EyePart>& parts, const glm::dvec2& place_px) const {
-    return shareAt(parts, place_px) > share_;
+bool Curtain::hold(bool is_held) {
+    const bool is_away = stays_away_ != is_held;
+    if (std::exchange(is_away_, is_away) == is_away) { return false; }
+    return has_moved_ = true;
 }
 
-bool Curtain::isAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px) const {
-    const std::optional<EyePart> part = partAt(parts, place_px);
-    return part && std::abs(place_px.x - lineIn(*part, share_)) <= kReachPx;
-}
-
-void Curtain::dragTo(const std::vector<EyePart>& parts, const glm::dvec2& place_px) {
-    share_ = std::clamp(shareAt(parts, place_px), 0.0, 1.0);
+bool Curtain::takes(const DesktopEvent& event, const std::vector<EyePart>& parts) {
+    using Kind = DesktopEvent::Kind;
+    const std::optional<EyePart> part = partAt(parts, event.place_px);
+    const bool is_at = !is_away_ && part && std::abs(event.place_px.x - lineIn(*part, share_)) <= kReachPx;
+    if (event.kind == Kind::kMove) {
+        is_pointed_at_ = is_at || is_dragged_;
+        if (!is_dragged_) { return false; }
+        share_ = std::clamp(shareAt(parts, event.place_px), 0.0, 1.0);
+        return has_moved_ = true;
+    }
+    if (event.kind == Kind::kPress && event.isLeft() && is_at) { return is_dragged_ = true; }
+    if (event.kind != Kind::kRelease || !is_dragged_) { return false; }
+    is_dragged_ = false;
+    log_.say(fmt::format("the curtain hangs at {:.0f} %", 100.0 * share_));
+    return true;
 }
 
 void Curtain::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts) const {

@@ -1,129 +1,115 @@
-// The window's panel, and the requests made there.
-#include "app/desktop/desktop_shell.h"
-#include "app/desktop/open_dialog.h"
-#include "app/view/panel/measure.h"
-#include "app/view/placement/placement.h"
-#include "engine/error.h"
+// Clicks and letters.
+#include "app/desktop/desktop_panel.h"
+
+#include "app/desktop/eye_parts.h"
+#include "app/view/panel/panel_style.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace binosplat {
 
-void DesktopShell::layOutPanel(const PanelPointer& pointer, double seconds) {
-    layouts_due_ = std::max(layouts_due_ - 1, 0);
-    requests_.fillStatus(comparison_ && comparison_->is_whole_asked, viewpoints_);
-    if (const LoadedScene* const scene = scenes_.get(); scene != nullptr) {
-        panel_.status().facts =
-            describeFacts(scene->facts, scene->measured.value_or(options_.run.metres_per_unit));
+namespace {
+
+constexpr std::array<std::pair<int, bool PanelRequests::*>, 8> kRequestKeys{
+    {{GLFW_KEY_H, &PanelRequests::help},
+     {GLFW_KEY_F, &PanelRequests::show_whole},
+     {GLFW_KEY_R, &PanelRequests::reset_scene},
+     {GLFW_KEY_O, &PanelRequests::open_file},
+     {GLFW_KEY_C, &PanelRequests::compare},
+     {GLFW_KEY_P, &PanelRequests::take_picture},
+     {GLFW_KEY_F11, &PanelRequests::fill_screen},
+     {GLFW_KEY_SPACE, &PanelRequests::play}}};
+
+}  // namespace
+
+DesktopPanel::DesktopPanel(const Context& context, const FrameLog& log)
+    : log_(log), picture_(context, vk::Format::eR8G8B8A8Srgb) {
+    picture_.status().window.emplace();
+    if (const std::string& complaint = picture_.canvas().font().complaint(); !complaint.empty()) {
+        log_.print(complaint);
     }
-    panel_.showTimes(pictures_.lastFrame(), "", seconds);
-    panel_.askFor(files_, state_.settings());
-    follow(panel_.layOut(pointer, state_.settings(), seconds));
 }
 
-void DesktopShell::follow(const PanelRequests& requests) {
-    state_.set(requests.settings);
-    ShownWindow& window = *panel_.status().window;
-    if (requests.help) {
-        window.helps = !window.helps || !state_.settings().panel;
-        showPanel();
-        ViewSettings settings = state_.settings();
-        settings.page = PanelPage::kView;
-        state_.set(settings);
-        log_.say(window.helps ? "help" : "no help");
-    }
-    if (requests.fill_screen) {
-        window_.toggleFullScreen();
-        window.fills_screen = !window.fills_screen;
-    }
-    if (LoadedScene* const scene = scenes_.get(); scene != nullptr) {
-        if (requests.show_whole) { showWhole(); }
-        if (requests.reset_scene) { showStart(); }
-        changeViewpoints(requests);
-        measure(requests);
-        if (const std::string said = scene->moveTime(requests.play, requests.frame_step, requests.frame);
-            !said.empty()) {
-            log_.say(said);
-        }
-    }
-    openAndSave(requests);
-    if (requests.quit) { leaving_ = true; }
+void DesktopPanel::say(const std::string& message) {
+    picture_.status().message = message;
+    layouts_due_ = std::max(layouts_due_, 1);
+    log_.say(message);
 }
 
-void DesktopShell::changeViewpoints(const PanelRequests& requests) {
-    if (requests.viewpoint_step != 0) { goTo(viewpoints_.goBy(requests.viewpoint_step)); }
-    if (requests.keep_viewpoint) {
-        const OrbitCamera& camera = mover_.camera();
-        viewpoints_.keep({camera.position(), camera.centre(), camera.up(), 0.0});
-    }
-    followViewpoints(requests, panel_.entry(), viewpoints_);
-}
-
-void DesktopShell::measure(const PanelRequests& requests) {
-    LoadedScene& scene = *scenes_.get();
-    if (requests.measure) { say(openRuler(ruler_)); }
-    const std::optional<double> measured = takeMeasure(requests, ruler_, scene);
-    if (!measured) { return; }
-    Similarity placement = state_.sceneFromRoom();
-    placement.scale = 1.0 / *measured;
-    state_.place(placement);
-    notes_.save(scene.name, savedPlace(state_, scene));
-}
-
-void DesktopShell::openAndSave(const PanelRequests& requests) {
-    if (requests.save && scenes_.get() != nullptr) {
-        // Level, for a wearer who stands there later.
-        const OrbitCamera& camera = mover_.camera();
-        Similarity level = startPlacement({camera.position(), camera.centre(), camera.up(), 0.0},
-                                          options_.run.metres_per_unit);
-        level.scale = state_.sceneFromRoom().scale;
-        state_.place(level);
-        notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
-    }
-    requests_.follow(requests);
-    // On the page with the list of scenes, the scene to compare with is chosen from that list.
-    const bool chooses = requests.compare && scenes_.comparesNext();
-    if (chooses && state_.settings().page != PanelPage::kScenes) { openFile(); }
-    if (requests.show_other && comparison_) { comparison_->is_whole_asked = !comparison_->is_whole_asked; }
-    if (requests.open_file) { openFile(); }
-    if (requests.take_picture && scenes_.get() != nullptr) { writes_picture_ = true, is_refined_ = false; }
-}
-
-void DesktopShell::showPanel() {
-    ViewSettings settings = state_.settings();
+void DesktopPanel::toggleHelp(ViewState& state) {
+    bool& helps = picture_.status().window->helps;
+    helps = !helps || !state.settings().panel;
+    ViewSettings settings = state.settings();
     settings.panel = true;
-    state_.set(settings);
+    settings.page = PanelPage::kView;
+    state.set(settings);
+    log_.say(helps ? "help" : "no help");
 }
 
-void DesktopShell::openFile() {
-    if (!dialogs_.now().empty()) { return; }  // it is already open
-    dialogs_.read("choosing a file", [this]() -> FileWorker::Done {
-        return [this, chosen = askForFile([this] { return leaving_.load(); })] {
-            if (!chosen.trouble.empty()) { return say(chosen.trouble); }
-            if (!chosen.file.empty()) { scenes_.begin(chosen.file); }
-        };
-    });
+PanelRequests DesktopPanel::requestsOf(int key, const ViewSettings& settings) {
+    const PanelStatus& now = picture_.status();
+    PanelRequests requests;
+    requests.settings = settings;
+    const auto at = std::ranges::find(kRequestKeys, key, [](const auto& of) { return of.first; });
+    if (at != kRequestKeys.end()) {
+        requests.*at->second = true;
+        requests.compare = requests.compare && !now.compares;  // while held, it shows the other scene
+    } else if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
+        requests.viewpoint = static_cast<std::size_t>(key - GLFW_KEY_1);
+    } else if (key == GLFW_KEY_TAB) {
+        requests.settings.panel = !settings.panel;
+    } else if (key == GLFW_KEY_PERIOD || key == GLFW_KEY_COMMA) {
+        requests.frame_step = key == GLFW_KEY_PERIOD ? 1 : -1;
+    } else if (key == GLFW_KEY_ESCAPE) {
+        (now.window->fills_screen ? requests.fill_screen : requests.quit) = true;
+    }
+    return requests;
 }
 
-void DesktopShell::openDropped(const DesktopEvent& event) {
-    event.path.ends_with(".viewpoints.json") ? viewpoints_.read(event.path)
-                                             : scenes_.begin(event.path, event.second);
+bool DesktopPanel::takesText(const DesktopEvent& event) {
+    using Kind = DesktopEvent::Kind;
+    TextEntry& entry = picture_.entry();
+    layouts_due_ = 2;
+    if (event.kind == Kind::kText && entry.isOpen()) {
+        std::array<char, 5> letter{};
+        entry.type(ImTextCharToUtf8(letter.data(), static_cast<unsigned>(event.code)));
+    }
+    if (event.kind != Kind::kKey || !entry.isOpen()) { return event.kind == Kind::kText; }
+    if (event.code == GLFW_KEY_BACKSPACE) { entry.eraseLast(); }
+    if (event.code == GLFW_KEY_ESCAPE) { entry.close(); }
+    if (event.code == GLFW_KEY_ENTER || event.code == GLFW_KEY_KP_ENTER) { entry.confirm(); }
+    return true;
 }
 
-void DesktopShell::takePicture() {
-    const bool both = state_.settings().picture_both_eyes;
-    WindowSight sight = windowSight();
-    sight.stereo = both ? WindowStereo::kSideBySide : WindowStereo::kMono;
-    FrameSettings settings = frameSettingsNow(true);
-    settings.mode = both ? Mode::kShared : Mode::kMono;
-    settings.keep_classes = false;
-    // Of the other one, if it fills the window.
-    scenes_.draw(comparison_ && comparison_->is_whole);
-    writer_.begin(scenes_.shotOf(scenes_.seenFromDrawn(eyesOf(mover_.camera(), sight, areaPx())), settings),
-                  scenes_.drawn()->name);
-    scenes_.draw(false);
+bool DesktopPanel::takesMouse(const DesktopEvent& event, const WindowPart& part, bool is_free) {
+    using Kind = DesktopEvent::Kind;
+    if (event.kind == Kind::kKey || event.kind == Kind::kDrop) { return false; }
+    if (event.kind == Kind::kLeave || !is_free || !(pointer_.pressed || isIn(part, event.place_px))) {
+        if (event.kind == Kind::kMove || event.kind == Kind::kLeave) { pointer_.place_px.reset(); }
+        return false;
+    }
+    pointer_.place_px =
+        (event.place_px - glm::dvec2(part.at_px)) * glm::dvec2(kPanelPx) / glm::dvec2(part.size_px);
+    if (event.kind == Kind::kPress && event.isLeft()) { pointer_.pressed = true; }
+    if (event.kind == Kind::kRelease && event.isLeft()) { pointer_.pressed = false; }
+    pointer_.wheel = event.kind == Kind::kWheel ? event.steps : 0.0;
+    return true;
+}
+
+PanelRequests DesktopPanel::layOut(const ViewSettings& settings, double seconds) {
+    layouts_due_ = std::max(layouts_due_ - 1, 0);
+    PanelRequests requests = picture_.layOut(pointer_, settings, seconds);
+    pointer_.wheel = 0.0;
+    return requests;
+}
+
+void DesktopPanel::keepFrameTime() {
+    layouts_due_ = std::max(layouts_due_, 1);  // the times are new
+    picture_.keepFrameTime();
 }
 
 }  // namespace binosplat

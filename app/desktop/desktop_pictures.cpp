@@ -53,7 +53,7 @@ void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
 }
 
 void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
-                             const Look& look, bool waits) {
+                             WindowStereo stereo, bool waits) {
     const glm::uvec2 size_px = eyes.front().size_px;
     const glm::uvec2 memory_px = glm::max(settings.most_px, size_px);
     reserve(memory_px, eyes.size());
@@ -62,14 +62,16 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
     const auto present = [&](Commands& commands) {
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             const vk::Image image = *images_[e]->image;
-            const WarpBuffers* const tinted_by = look.tint ? frame.chosenTiles(static_cast<int>(e)) : nullptr;
+            const WarpBuffers* const tinted_by =
+                settings.keep_classes ? frame.chosenTiles(static_cast<int>(e)) : nullptr;
             presenter_.record(commands,
                               {.picture = &frame.picture(static_cast<int>(e)),
                                .size_px = size_px,
                                .tinted_by = tinted_by,
                                .colour = image,
                                .depth = {},
-                               .kept_bits = look.anaglyph && e == kRight ? kRed : 0},
+                               // The right eye's image of an anaglyph has the left one's red.
+                               .kept_bits = stereo == WindowStereo::kAnaglyph && e == kRight ? kRed : 0},
                               settings.near);
             changeLayout(commands, image, vk::ImageLayout::eColorAttachmentOptimal,
                          vk::ImageLayout::eTransferSrcOptimal);

@@ -32,17 +32,13 @@ private:
 
 class DesktopPictures {
 public:
-    struct Look {
-        bool tint = false;
-        bool anaglyph = false;  // the right eye's image has the left one's red
-    };
-
     explicit DesktopPictures(const Context& context);
 
-    // Renders these eyes, all of the same size. With `waits` the picture is complete when this returns;
-    // otherwise it does not wait, and the picture may lack splats. Throws Error if memory is short.
+    // Renders these eyes, all of the same size; tinted if the settings keep classes. With `waits` the picture
+    // is complete when this returns; otherwise it does not wait, and the picture may lack splats. Throws
+    // Error if memory is short.
     void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
-                const Look& look, bool waits);
+                WindowStereo stereo, bool waits);
     // Records the parts' pictures, scaled, into a window that has been cleared; of each only what lies to the
     // right of this share of its width.
     void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts,

@@ -8,7 +8,6 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 namespace binosplat {
@@ -20,15 +19,6 @@ constexpr int kUsualRefreshHz = 60;
 
 DesktopWindow& self(GLFWwindow* window) {
     return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window));
-}
-
-std::string utf8Of(unsigned letter) {
-    const auto byte = [](unsigned value) { return static_cast<char>(value); };
-    const auto more = [&](int shift) { return byte(0x80 | ((letter >> shift) & 0x3f)); };
-    if (letter < 0x80) { return {byte(letter)}; }
-    if (letter < 0x800) { return {byte(0xc0 | letter >> 6), more(0)}; }
-    if (letter < 0x10000) { return {byte(0xe0 | letter >> 12), more(6), more(0)}; }
-    return {byte(0xf0 | letter >> 18), more(12), more(6), more(0)};
 }
 
 bool gamepadState(GLFWgamepadstate& state) {
@@ -81,13 +71,6 @@ DesktopWindow::DesktopWindow(const Context& context)
     pinch_ = std::make_unique<Pinch>(window_.get(), glfwPostEmptyEvent);
 }
 
-DesktopWindow::~DesktopWindow() {
-    const std::lock_guard lock(context_.queueMutex());
-    try {
-        context_.device().waitIdle();
-    } catch (const vk::SystemError&) {}  // a lost device has no work in flight
-}
-
 void DesktopWindow::makePictures() {
     pictures_.reset();
     VkSurfaceKHR surface = VK_NULL_HANDLE;
@@ -117,25 +100,24 @@ void DesktopWindow::listen() {
     GLFWwindow* const window = window_.get();
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
         const bool repeats = action == GLFW_REPEAT && key == GLFW_KEY_BACKSPACE;
-        if (action == GLFW_PRESS || repeats) { self(w).add({.kind = Kind::kKey, .code = key, .path = {}}); }
+        if (action == GLFW_PRESS || repeats) { self(w).add({.kind = Kind::kKey, .code = key}); }
     });
     glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
-        self(w).add({.kind = Kind::kText, .path = utf8Of(letter)});
+        self(w).add({.kind = Kind::kText, .code = static_cast<int>(letter)});
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
-        self(w).add(
-            {.kind = action == GLFW_PRESS ? Kind::kPress : Kind::kRelease, .code = button, .path = {}});
+        self(w).add({.kind = action == GLFW_PRESS ? Kind::kPress : Kind::kRelease, .code = button});
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
         self(w).cursor_ = {x, y};
-        self(w).add({.kind = Kind::kMove, .path = {}});
+        self(w).add({.kind = Kind::kMove});
     });
     glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
         glfwGetCursorPos(w, &self(w).cursor_.x, &self(w).cursor_.y);
-        self(w).add({.kind = entered == GLFW_TRUE ? Kind::kMove : Kind::kLeave, .path = {}});
+        self(w).add({.kind = entered == GLFW_TRUE ? Kind::kMove : Kind::kLeave});
     });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double steps) {
-        self(w).add({.kind = Kind::kWheel, .steps = steps, .path = {}});
+        self(w).add({.kind = Kind::kWheel, .steps = steps});
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         if (count == 2) { self(w).add({.kind = Kind::kDrop, .path = paths[0], .second = paths[1]}); }
@@ -150,7 +132,7 @@ void DesktopWindow::wait(double most_seconds) {
     if (most_seconds > 0.0 && events_.empty()) { glfwWaitEventsTimeout(most_seconds); }
     glfwPollEvents();
     if (const double apart = pinch_->take(); apart != 1.0) {
-        add({.kind = DesktopEvent::Kind::kWheel, .steps = wheelStepsOf(apart), .path = {}});
+        add({.kind = DesktopEvent::Kind::kWheel, .steps = wheelStepsOf(apart)});
     }
 }
 
@@ -226,20 +208,24 @@ double DesktopWindow::refreshHz() {
     return refresh_hz_;
 }
 
-void DesktopWindow::setTitle(const std::string& title) { glfwSetWindowTitle(window_.get(), title.c_str()); }
+void DesktopWindow::setTitle(const std::string& title) {
+    if (std::exchange(title_, title) != title) { glfwSetWindowTitle(window_.get(), title.c_str()); }
+}
 
-void DesktopWindow::toggleFullScreen() {
+bool DesktopWindow::toggleFullScreen() {
     GLFWwindow* const window = window_.get();
     glm::ivec4& before = before_full_screen_;
     if (glfwGetWindowMonitor(window) != nullptr) {
-        return glfwSetWindowMonitor(window, nullptr, before.x, before.y, before.z, before.w, GLFW_DONT_CARE);
+        glfwSetWindowMonitor(window, nullptr, before.x, before.y, before.z, before.w, GLFW_DONT_CARE);
+        return false;
     }
     GLFWmonitor* const monitor = monitorOf(window);
-    if (monitor == nullptr) { return; }
+    if (monitor == nullptr) { return false; }
     glfwGetWindowPos(window, &before.x, &before.y);
     glfwGetWindowSize(window, &before.z, &before.w);
     const GLFWvidmode& mode = *glfwGetVideoMode(monitor);
     glfwSetWindowMonitor(window, monitor, 0, 0, mode.width, mode.height, mode.refreshRate);
+    return true;
 }
 
 bool DesktopWindow::show(const std::function<void(vk::Image window, vk::Semaphore drawn)>& draw) {
@@ -254,7 +240,6 @@ bool DesktopWindow::show(const std::function<void(vk::Image window, vk::Semaphor
             if (attempt > 0) {
                 throw Error(ExitCode::kNoDevice, fmt::format("the display is gone: {}", error.what()));
             }
-            context_.waitForQueue();
             makePictures();
         }
     }

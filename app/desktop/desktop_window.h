@@ -21,10 +21,11 @@ namespace binosplat {
 struct DesktopEvent {
     enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kText, kDrop, kLeave } kind;
     glm::dvec2 place_px{0.0};
-    int code = 0;          // GLFW's number of a key or a button
+    int code = 0;          // GLFW's number of a key or a button; a letter that was typed
     double steps = 0.0;    // of the wheel, away from the user; a pinch turns it, too
-    std::string path;      // that was dropped, or a letter that was typed, in UTF-8
+    std::string path{};    // that was dropped
     std::string second{};  // that was dropped with it, if these were two
+    [[nodiscard]] bool isLeft() const { return code == 0; }  // of a button
 };
 
 class DesktopWindow {
@@ -33,7 +34,6 @@ public:
     explicit DesktopWindow(const Context& context);
     DesktopWindow(const DesktopWindow&) = delete;
     DesktopWindow& operator=(const DesktopWindow&) = delete;
-    ~DesktopWindow();
 
     // Returns after this time, or once something happens.
     void wait(double most_seconds);
@@ -53,7 +53,8 @@ public:
     // Pictures that its monitor shows in a second.
     [[nodiscard]] double refreshHz();
     void setTitle(const std::string& title);
-    void toggleFullScreen();
+    // True if it fills the screen from now on.
+    bool toggleFullScreen();
     // The pointer is the one for what can be dragged to both sides.
     void pointSideways(bool sideways);
 
@@ -73,6 +74,7 @@ private:
     std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives everything drawn on it
     std::unique_ptr<GLFWcursor, void (*)(GLFWcursor*)> sideways_;
     bool points_sideways_ = false;
+    std::string title_;
     std::unique_ptr<WindowPictures> pictures_;
     std::unique_ptr<Pinch> pinch_;
     std::vector<DesktopEvent> events_;

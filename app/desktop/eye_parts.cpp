@@ -1,10 +1,25 @@
 // Stereo pictures in one window.
 #include "app/desktop/eye_parts.h"
 
+#include "app/view/panel/panel_style.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace binosplat {
+
+namespace {
+
+// The panel's size: in its own pixels, on a desktop without magnification; and at most this share of the
+// window's width.
+constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
+
+}  // namespace
+
+bool isIn(const WindowPart& part, const glm::dvec2& place_px) {
+    const glm::dvec2 low(part.at_px), high(part.at_px + part.size_px);
+    return glm::all(glm::greaterThanEqual(place_px, low)) && glm::all(glm::lessThan(place_px, high));
+}
 
 bool showsTwoEyes(WindowStereo stereo) { return stereo != WindowStereo::kMono; }
 
@@ -28,10 +43,24 @@ std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px) {
 
 std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px) {
     const auto found = std::ranges::find_if(parts, [&](const EyePart& part) {
-        const glm::dvec2 low(part.at_px), high(part.at_px + part.size_px);
-        return glm::all(glm::greaterThanEqual(place_px, low)) && glm::all(glm::lessThan(place_px, high));
+        return isIn({glm::ivec2(part.at_px), glm::ivec2(part.size_px)}, place_px);
     });
     return found == parts.end() ? std::nullopt : std::optional(*found);
+}
+
+WindowLayout layOutWindow(glm::uvec2 size_px, double scale, const ViewSettings& settings, double angle_rad) {
+    WindowLayout layout;
+    if (settings.panel) {
+        const glm::dvec2 size(size_px), panel(kPanelPx);
+        const double shown =
+            std::min({scale * kPanelScale, size.y / panel.y, kPanelShare * size.x / panel.x});
+        layout.panel.size_px = glm::max(glm::ivec2(shown * panel), glm::ivec2(1));
+        layout.panel.at_px.x = static_cast<int>(size.x) - layout.panel.size_px.x;
+    }
+    layout.area_px = {size_px.x - static_cast<unsigned>(layout.panel.size_px.x), size_px.y};
+    layout.parts = partsOf(settings.window_stereo, layout.area_px);
+    layout.sight = {settings.window_stereo, settings.window_eyes, settings.window_plane, angle_rad};
+    return layout;
 }
 
 std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm::uvec2 size_px) {

@@ -3,6 +3,7 @@
 
 #include "app/desktop/orbit_camera.h"
 #include "app/view/settings/view_settings.h"
+#include "app/view/window/window_drawing.h"
 
 #include <glm/glm.hpp>
 
@@ -17,6 +18,7 @@ struct EyePart {
     glm::uvec2 at_px{0, 0}, size_px{0, 0};
 };
 
+[[nodiscard]] bool isIn(const WindowPart& part, const glm::dvec2& place_px);
 [[nodiscard]] bool showsTwoEyes(WindowStereo stereo);
 // Parts of equal size that fill an area; one part for an anaglyph.
 std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px);
@@ -31,6 +33,18 @@ struct WindowSight {
     double plane = 1.0;
     double angle_rad = 1.0;  // of view, along a part's longer side
 };
+
+// What is where in a window.
+struct WindowLayout {
+    WindowPart panel;            // on the right; empty: hidden
+    glm::uvec2 area_px{0, 0};    // the scene's, beside it
+    std::vector<EyePart> parts;  // of the area
+    WindowSight sight;
+
+    [[nodiscard]] glm::uvec2 partPx() const { return parts.front().size_px; }
+};
+// Of one whose pixels are `scale` times as small as those in which desktops count.
+WindowLayout layOutWindow(glm::uvec2 size_px, double scale, const ViewSettings& settings, double angle_rad);
 
 // One eye, or two, [kLeft] and [kRight], of `size_px`. Content in the plane of the screen is at the same
 // pixel for both.

@@ -65,8 +65,6 @@ private:
     void layOutPanel(bool hung, double step_seconds);
     void takeWindowInput(double step_seconds);
     void togglePanel();
-    // Plays or pauses a moving scene, or goes to another of its frames; does nothing for a still scene.
-    void moveTime(bool play, int step, std::optional<std::size_t> frame);
     void followPanel(const PanelRequests& requests);
     void openAndSave(const PanelRequests& requests);
     // The other scene of a comparison: takes it once it is loaded, and shows it while a button is held.

@@ -1,5 +1,4 @@
 // The viewer's files: scenes, settings, pictures, shaders.
-#include "app/view/panel/measure.h"
 #include "app/view/shader_reload.h"
 #include "app/view/viewer.h"
 #include "engine/error.h"
@@ -58,9 +57,6 @@ void Viewer::meetOther() {
 }
 
 void Viewer::openAndSave(const PanelRequests& requests) {
-    if (requests.save && scenes_.get() != nullptr) {
-        notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
-    }
     requests_.follow(requests);
     if (requests.show_other) { other_asked_ = !other_asked_; }
     picture_asked_ = picture_asked_ || requests.take_picture;

@@ -80,7 +80,7 @@ void Viewer::drawFrame() {
     if (scenes_.other() != nullptr) {
         showOther();
     } else {
-        moveTime(controls_.playPressed(), 0, {});
+        scenes_.moveTime(controls_.playPressed(), 0, {});
     }
     chooseThings(wearer, views);
     takeWindowInput(step_seconds);

@@ -41,13 +41,9 @@ void Viewer::takeWindowInput(double step_seconds) {
     const WindowInput& input = window_.poll();
     if (input.quit) { leave(); }
     recentre_asked_ = recentre_asked_ || input.recentre;
-    if (input.dropped.ends_with(".viewpoints.json")) {
-        place_.readViewpoints(input.dropped);
-    } else if (!input.dropped.empty()) {
-        scenes_.begin(input.dropped);
-    }
+    if (!input.dropped.empty() && !place_.takeViewpoints(input.dropped)) { scenes_.begin(input.dropped); }
     if (input.reload_shaders) { reloadShaders(); }
-    moveTime(input.play, input.frame_step, {});
+    scenes_.moveTime(input.play, input.frame_step, {});
     if (input.toggle_panel) { togglePanel(); }
     state_.place(movedByWindow(state_.sceneFromRoom(), input, place_.roomFromHead(), step_seconds));
 }
@@ -82,12 +78,6 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
                               window_.input().uses_panel, state_.settings(), step_seconds));
 }
 
-void Viewer::moveTime(bool play, int step, std::optional<std::size_t> frame) {
-    LoadedScene* const scene = scenes_.get();
-    if (scene == nullptr) { return; }
-    if (const std::string said = scene->moveTime(play, step, frame); !said.empty()) { log_.say(said); }
-}
-
 void Viewer::recordPanel(Commands& commands) {
     if (connection_.headset() != nullptr) { headset().things.record(commands); }
     panel_.record(commands, connection_.headset(), static_cast<bool>(window_));
@@ -98,7 +88,6 @@ void Viewer::followPanel(const PanelRequests& requests) {
     state_.set(requests.settings);
     if (requests.reload_shaders) { reloadShaders(); }
     if (place_.follow(requests, panel_.entry())) { controls_.letGo(); }
-    moveTime(requests.play, requests.frame_step, requests.frame);
     recentre_asked_ = recentre_asked_ || requests.recentre;
     openAndSave(requests);
     if (requests.quit) { leave(); }

@@ -36,7 +36,8 @@ public:
     bool goBy(int step);  // among the viewpoints; ends a tour
     // A wearer must not be moved smoothly, so a tour jumps, with a fade.
     bool passTour(double step_seconds);
-    void readViewpoints(const std::string& file) { viewpoints_.read(file); }
+    // True if a file is of viewpoints: it is read.
+    bool takeViewpoints(const std::string& file) { return viewpoints_.take(file); }
     [[nodiscard]] bool measures() const { return ruler_.isOpen(); }
     // While the ruler is open, a trigger says where the ray meets the scene. True once both places are known.
     bool measure(const std::array<xr::Hand, 2>& hands, const PanelInRoom& panel,

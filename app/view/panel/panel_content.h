@@ -109,7 +109,7 @@ struct PanelRequests {
     int viewpoint_step = 0;            // to the previous or next viewpoint
     int viewpoint_move = 0;            // of the current one, in the list
     int frame_step = 0;                // of a scene that moves
-    std::optional<std::size_t> frame;  // to go to
+    std::optional<std::size_t> frame, viewpoint;  // to go to
     std::string chosen_scene;          // empty: none
     std::string favourite;             // a scene to mark as favourite, or to unmark; empty: none
     // The text that was entered.

@@ -1,6 +1,7 @@
 // The panel's scenes.
 #include "app/view/panel/scene_requests.h"
 
+#include "app/view/panel/measure.h"
 #include "app/view/settings/view_files.h"
 
 namespace binosplat {
@@ -27,6 +28,10 @@ void SceneRequests::fillStatus(bool other_stays, const ViewpointList& viewpoints
 }
 
 void SceneRequests::follow(const PanelRequests& requests) {
+    scenes_.moveTime(requests.play, requests.frame_step, requests.frame);
+    if (requests.save && scenes_.get() != nullptr) {
+        notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
+    }
     if (requests.load) { loadSettings(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
     if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }

@@ -18,7 +18,7 @@ public:
 
     // In each frame. `other_stays`: the other scene of a comparison is shown without a button being held.
     void fillStatus(bool other_stays, const ViewpointList& viewpoints);
-    // All that is requested about scenes, apart from saving where one stands and seeing the other one.
+    // All that is requested about scenes, apart from where one stands in them and seeing the other one.
     void follow(const PanelRequests& requests);
 
 private:

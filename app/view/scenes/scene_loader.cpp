@@ -54,15 +54,6 @@ void LoadedScene::follow(std::span<const Eye> eyes, double step_seconds) {
     live->update(eyes, step_seconds);
 }
 
-std::string LoadedScene::moveTime(bool play, int step, std::optional<std::size_t> frame) {
-    if (moving == nullptr || (!play && step == 0 && !frame)) { return {}; }
-    if (play) { clock.togglePlaying(); }
-    if (step != 0) { clock.step(step); }
-    if (frame) { clock.goTo(*frame); }
-    return fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "paused at", clock.frame() + 1,
-                       clock.frameCount());
-}
-
 void LoadedScene::count(FrameCounters& counters) const {
     if (live) { counters.streaming = streamingOf(*live); }
 }

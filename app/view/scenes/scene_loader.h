@@ -32,9 +32,6 @@ struct LoadedScene {
     }
     // Before a frame of these eyes: requests what they need, and moves a moving scene on. Never waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
-    // Of one that moves: plays or pauses it, steps, or goes to a frame. Returns what it does now in a line;
-    // empty: nothing was asked for.
-    std::string moveTime(bool play, int step, std::optional<std::size_t> frame);
     // Adds what is resident of it to a frame's counters.
     void count(FrameCounters& counters) const;
 

@@ -244,6 +244,16 @@ std::string ShownScene::makeWay(const ViewState& state) {
         asked_);
 }
 
+void ShownScene::moveTime(bool play, int step, std::optional<std::size_t> frame) {
+    if (!shown_.scene || shown_.scene->moving == nullptr || (!play && step == 0 && !frame)) { return; }
+    SceneClock& clock = shown_.scene->clock;
+    if (play) { clock.togglePlaying(); }
+    if (step != 0) { clock.step(step); }
+    if (frame) { clock.goTo(*frame); }
+    log_.say(fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "paused at", clock.frame() + 1,
+                         clock.frameCount()));
+}
+
 bool ShownScene::isPlaceGiven(const LoadedScene& scene) const {
     const CameraOptions& camera = options_.run.camera;
     return scene.name == options_.scene &&

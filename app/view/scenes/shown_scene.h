@@ -141,6 +141,8 @@ public:
     // Before a frame of these eyes of the drawn scene: both request what they need, and both move on. Never
     // waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
+    // If it moves: plays or pauses it, steps, or goes to a frame, as asked.
+    void moveTime(bool play, int step, std::optional<std::size_t> frame);
     // In each frame: the scene that is not drawn waits for its own frame before the last, as the drawn one
     // does; and so do those that are shown no more. If `nothing` is drawn, all do.
     void passOver(bool nothing = false);

@@ -146,6 +146,12 @@ void ViewpointList::read(std::string file) {
                 });
 }
 
+bool ViewpointList::take(const std::string& file) {
+    if (!file.ends_with(".viewpoints.json")) { return false; }
+    read(file);
+    return true;
+}
+
 void ViewpointList::add(const std::vector<Viewpoint>& read, const std::string& file) {
     std::size_t added = 0;
     for (Viewpoint viewpoint : read) {

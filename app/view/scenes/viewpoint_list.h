@@ -43,6 +43,8 @@ public:
     void writeShared();
     // Adds those of a file that are not there yet; with no file, those of the shared one.
     void read(std::string file);
+    // Reads a file that may be anything; false if it is none of viewpoints, by its name.
+    bool take(const std::string& file);
 
     // A tour begins with the first, or ends.
     void toggleTour();

@@ -41,6 +41,7 @@ public:
         settings_ = std::move(settings);
         settings_.metres_per_unit.reset();  // the scene's
     }
+    void showPanel() { settings_.panel = true; }
     void togglePanel() { settings_.panel = !settings_.panel; }
 
     // These settings were drawn, so they fit in memory.

@@ -1,0 +1,87 @@
+// When the scene is drawn for the window, and how: coarsely while something changes, in full once it rests;
+// and what is seen in its picture.
+#pragma once
+
+#include "app/desktop/curtain.h"
+#include "app/desktop/desktop_pictures.h"
+#include "app/view/files/picture_writer.h"
+#include "app/view/scenes/scene_notes.h"
+#include "app/view/scenes/shown_scene.h"
+#include "app/view/settings/view_state.h"
+
+#include <chrono>
+
+namespace binosplat {
+
+// Frames in motion with these settings.
+FramesAhead framesInMotion(const ViewSettings& settings, glm::uvec2 size_px);
+
+class ScenePictures {
+public:
+    // All must exist while it is used.
+    ScenePictures(const Context& context, const CameraOptions& options, const ViewState& state,
+                  ShownScene& scenes, const Curtain& curtain, PictureWriter& writer, Say say)
+        : context_(context),
+          options_(options),
+          state_(state),
+          scenes_(scenes),
+          curtain_(curtain),
+          writer_(writer),
+          say_(std::move(say)),
+          shown_(context) {}
+
+    // Another scene is shown.
+    void forget();
+    // From now on another one is compared with it.
+    void beginComparison();
+    // Once per turn: draws the scene if its picture is to change; true if it did.
+    bool draw(const OrbitCamera& camera, const WindowLayout& layout, double seconds, double refresh_hz);
+    // The time until then, if nothing else changes.
+    [[nodiscard]] double secondsToNext() const;
+    // Also has one written to a file, once it is drawn in full.
+    void askForFile() { is_file_asked_ = true, is_refined_ = false; }
+    // Of the last one, for the list of scenes.
+    void keep(SceneNotes& notes);
+
+    // Records both scenes and the curtain into a window that has been cleared.
+    void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts);
+    // The point of the scene that is shown at a place of the window, if any is.
+    [[nodiscard]] std::optional<glm::dvec3> seenAt(const std::vector<EyePart>& parts,
+                                                   const glm::dvec2& place_px) const;
+    [[nodiscard]] const FrameResult& lastFrame() const { return shown_.lastFrame(); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    // Everything on which the picture depends.
+    struct Sight {
+        std::array<LoadedScene*, 2> scenes{};
+        OrbitCamera camera;
+        glm::uvec2 part_px{0, 0};
+        ViewSettings settings;
+        std::array<std::size_t, 2> frames{};  // of scenes that move
+        std::uint64_t moment = 0;             // counts while one loads
+        bool operator==(const Sight&) const = default;
+    };
+
+    [[nodiscard]] std::array<LoadedScene*, 2> both() const { return {scenes_.get(), scenes_.other()}; }
+    void render(const WindowLayout& layout, double scale, bool at_rest, double refresh_hz);
+    void writeFile(const WindowLayout& layout);
+    [[nodiscard]] FrameSettings settingsFor(bool at_rest) const;
+
+    const Context& context_;
+    const CameraOptions& options_;
+    const ViewState& state_;
+    ShownScene& scenes_;
+    const Curtain& curtain_;
+    PictureWriter& writer_;
+    Say say_;
+    DesktopPictures shown_;
+    std::optional<DesktopPictures> other_;  // from the first comparison on
+    MotionScale motion_;
+    Sight drawn_;
+    bool is_refined_ = true, is_file_asked_ = false;
+    std::uint64_t moment_ = 0;
+    Clock::time_point changed_at_{};
+};
+
+}  // namespace binosplat
