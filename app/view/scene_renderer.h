@@ -3,6 +3,7 @@
 
 #include "app/axes/staying_axes.h"
 #include "app/terminal/frame_log.h"
+#include "app/view/frame_views.h"
 #include "app/view/governor/met_displays.h"
 #include "app/view/governor/splat_budget.h"
 #include "app/view/headset/connected_headset.h"
@@ -17,17 +18,6 @@
 #include <span>
 
 namespace binosplat {
-
-// The views of a headset's frame.
-struct FrameViews {
-    std::array<xr::EyeView, 2> eyes;
-    std::array<Pose, 2> room_from_eyes;
-    Pose room_from_head;
-    std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
-    std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
-    // What the frame's pictures show, in the form that the runtime is told.
-    std::array<xr::EyeView, 2> pictures;
-};
 
 // A picture of the frame: its eye, and that of what is seen of it.
 struct SeenPicture {

@@ -34,13 +34,14 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       waiting_(context_),
       pointing_(context_),
       notes_(files_, say_),
-      message_line_(files_, settings.first_steps),
+      seen_(files_, settings.first_steps),
       place_(state_, notes_, files_, options_.run.metres_per_unit, say_, log_line_),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint}),
       drawn_(context_, state_, scenes_, renderer_, options_.load_first, say_, log_line_),
       requests_(state_, scenes_, notes_, files_, panel_, say_),
-      kept_picture_(context_, scenes_, renderer_, notes_) {
+      kept_picture_(context_, scenes_, renderer_, notes_),
+      exchange_(state_, scenes_, renderer_, place_, kept_picture_, notes_, pictures_, say_, log_line_) {
     for (const double rate_hz : headset().refresh_rates) {
         if (options_.usual_rate_hz == 0.0 || std::abs(rate_hz - options_.usual_rate_hz) > 0.5) { continue; }
         ViewSettings usual = state_.settings();
@@ -61,8 +62,7 @@ void Viewer::run() {
     try {
         while (options_.load_first && !scenes_.isComplete() && !leaving_) {
             if (isInterrupted()) { leave(); }
-            if (canTakeScene(false)) { takeScene(); }
-            if (scenes_.isOtherReady()) { takeOther(); }
+            takeScenes(true);
             drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
         }
@@ -141,7 +141,7 @@ bool Viewer::comeBack() {
 
 void Viewer::say(const std::string& message) {
     panel_.status().message = message;
-    message_line_.say(message);
+    seen_.say(message);
     log_.say(message);
 }
 

@@ -13,13 +13,16 @@ namespace {
 
 // While the scene loads, unless a background is set.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
+// How often the window is drawn while there are no frames.
+constexpr std::chrono::milliseconds kWindowAlone(16);
+
 }  // namespace
 
 void Viewer::settle() {
     xr::Session& session = headset().session;
     if (!session.settle(recentre_asked_)) { return; }
     recentre_asked_ = false;
-    is_new_view_ = true;
+    seen_.beginView();
     controls_.letGo();
     const std::optional<double> floor_m = session.floorBelowMetres();
     log_.say("the room now begins where the wearer stands" +
@@ -27,22 +30,17 @@ void Viewer::settle() {
     panel_.inRoom().hangBefore({});
 }
 
-std::optional<FrameViews> Viewer::locate() {
-    const std::optional<std::array<xr::EyeView, 2>> located = headset().session.locateEyes();
-    if (!located) { return std::nullopt; }
-    const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
-    const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
-    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}, eyes};
-    if (const auto& insets = headset().session.insets()) {
-        views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]},
-                                     xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
-    }
-    return views;
+void Viewer::takeScenes(bool at_once) {
+    const SceneExchange::Taken taken = exchange_.take(at_once);
+    if (taken == SceneExchange::Taken::kNone) { return; }
+    pointing_.forget();
+    controls_.letGo();
+    taken == SceneExchange::Taken::kFirst ? seen_.beginFirstView() : seen_.beginView();
 }
 
 void Viewer::drawFrame() {
     settle();
-    std::optional<FrameViews> located = locate();
+    std::optional<FrameViews> located = locateViews(headset().session);
     if (!located) {
         headset().session.endFrame({});
         drawWindowAlone("The headset cannot tell where it is");
@@ -50,8 +48,7 @@ void Viewer::drawFrame() {
     }
     renderer_.meetDisplay(headset().session);
     files_.deliver();
-    if (canTakeScene(true) && kept_picture_.isKept()) { takeScene(); }
-    if (scenes_.isOtherMet()) { takeOther(); }
+    takeScenes(false);
     FrameViews& views = *located;
     place_.setHead(views.room_from_head);
     const double step_seconds = headset().session.stepSeconds();
@@ -62,6 +59,43 @@ void Viewer::drawFrame() {
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->floor) {
         wearer.scene_floor = SceneFloor{scene->up, *scene->floor};
     }
+    control(wearer, views);
+    takeWindowInput(step_seconds);
+    if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate);
+        !complaint.empty()) {
+        say(complaint);
+    }
+    panel_.status().state.clear();
+    const bool hangs = state_.settings().panel;
+    if (hangs || window_) { layOutPanel(hangs, step_seconds); }
+    // By now the runtime knows better where the eyes will be.
+    if (std::optional<FrameViews> later = locateViews(headset().session)) {
+        later->gazes = views.gazes;
+        views = *later;
+    }
+    const bool shows = renderScene(views);
+    seen_.darken(headset(), state_.sceneFromRoom(), place_.roomFromHead(), renderer_.wasCutShort(),
+                 step_seconds, views.eyes);
+    sayPicture(pictures_.takeOutcome());
+    window_.show();
+    headset().images->release();
+    if (headset().inset) { headset().inset_images->release(); }
+    panel_.release(headset());
+    headset().things.release();
+    const ViewSettings& drawn = drawn_.get();
+    const bool shares = scenes_.get() != nullptr && drawn.showsOneEye();
+    submission_.end(headset(), views, hangs ? &panel_.inRoom() : nullptr,
+                    shares ? std::optional<int>(drawn.stereo.dominant) : std::nullopt);
+    if (std::exchange(picture_asked_, false) && shows) {
+        pictures_.begin(
+            renderer_.shotOf(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
+            scenes_.drawn()->name);
+    }
+    sayChange();
+    panel_.keepFrameTime();
+}
+
+void Viewer::control(const WearerNow& wearer, FrameViews& views) {
     controls_.update(wearer, panel_.inRoom(), state_);
     if (place_.measure(wearer.hands, panel_.inRoom(), pointing_, panel_.entry()) &&
         !state_.settings().panel) {
@@ -71,100 +105,43 @@ void Viewer::drawFrame() {
                   state_.settings().follow_ground && !scenes_.drawsOther(), views.room_from_head,
                   wearer.floor_m.value_or(kUsualFloorMetres));
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
-        views.gazes =
-            gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
+        views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg),
+                                   wearer.step_seconds);
     } else {
         gaze_ = {};
     }
-    if (place_.goBy(controls_.viewpointStep()) || place_.passTour(step_seconds)) { controls_.letGo(); }
-    if (scenes_.other() != nullptr) {
-        showOther();
-    } else {
+    if (place_.goBy(controls_.viewpointStep()) || place_.passTour(wearer.step_seconds)) { controls_.letGo(); }
+    if (scenes_.other() == nullptr) {
         scenes_.moveTime(controls_.playPressed(), 0, {});
+    } else if (const std::array<bool, 2>& held = controls_.playHeld();
+               exchange_.showOther(held[kLeft] || held[kRight])) {
+        pointing_.forget();
+        for (const int h : {kLeft, kRight}) {
+            if (held[static_cast<std::size_t>(h)]) { headset().input.pulse(h); }
+        }
     }
-    chooseThings(wearer, views);
-    takeWindowInput(step_seconds);
-    if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate);
-        !complaint.empty()) {
-        say(complaint);
-    }
-    panel_.status().state.clear();
-    panel_hangs_ = state_.settings().panel;
-    if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
-    // By now the runtime knows better where the eyes will be.
-    if (std::optional<FrameViews> later = locate()) {
-        later->gazes = views.gazes;
-        views = *later;
-    }
+    seen_.choose(headset(), wearer, controls_, panel_.inRoom(), pointing_, state_.settings(), views.eyes);
+}
+
+bool Viewer::renderScene(FrameViews& views) {
     // Last, since the panel and the window may change the settings.
     const bool fits = drawn_.prepare(headset(), views, window_.get());
-    if (fits) { meetComing(views); }
+    if (fits) { exchange_.meetComing(headset(), drawn_.get(), views); }
     window_.acquire();
-    const bool takes_picture = std::exchange(picture_asked_, false) && scenes_.get() != nullptr && fits;
-    if (scenes_.get() != nullptr && fits) {
-        meetOther();
-        waiting_.passOver();
-        renderer_.render(headset(), scenes_, drawn_.get(), window_.get(), [this](Commands& commands) {
-            recordPanel(commands);
-            pointing_.record(commands, scenes_, renderer_, state_.sceneFromRoom());
-            kept_picture_.record(commands);
-        });
-        kept_picture_.countFrame();
-        for (LoadedScene* const scene : {scenes_.get(), scenes_.other()}) {
-            if (scene != nullptr && scene->live) { sayLive(*scene); }
-        }
-    } else {
+    if (scenes_.get() == nullptr || !fits) {
         renderWaiting();
+        return false;
     }
-    // After a frame that was cut short, the view fades in, too.
-    const bool is_new = std::exchange(is_new_view_, false) || renderer_.wasCutShort();
-    fade_.update(state_.sceneFromRoom(), place_.roomFromHead(), is_new, step_seconds);
-    headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
-    sayPicture(pictures_.takeOutcome());
-    window_.show();
-    showFrame(views);
-    if (takes_picture) {
-        pictures_.begin(
-            renderer_.shotOf(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
-            scenes_.drawn()->name);
-    }
-    sayChange();
-    panel_.keepFrameTime();
-}
-
-void Viewer::sayLive(LoadedScene& scene) {
-    for (const std::string& line : scene.live->takeLines(Waits::kNever)) { say(line); }
-    if (said_there_ || scene.stream == nullptr || !scene.stream->isSettled()) { return; }
-    const std::optional<LoaderWork> work = scene.stream->tryWork();
-    if (!work) { return; }
-    said_there_ = true;
-    const StreamCounters counters = scene.stream->counters();
-    log_.say(fmt::format(
-        "everything in view is loaded: {} splats, {} levels of leaves, {:.2f} million splats read in {:.1f} "
-        "s; frames that "
-        "waited for it: {}",
-        counters.splats_resident, counters.chunks_resident, 1e-6 * static_cast<double>(work->splats),
-        work->seconds, counters.frames_waited_for_loading));
-}
-
-void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
-    for (const int h : {kLeft, kRight}) {
-        if (panel_.inRoom().pulses(h)) { headset().input.pulse(h); }
-    }
-    vignette_.update(state_.settings().vignette && controls_.isMoving(), wearer.step_seconds);
-    std::array<std::optional<double>, 2> meets_m;
-    for (std::size_t h = 0; h < 2 && !controls_.aimingHand(); ++h) {
-        meets_m[h] = pointing_.meetsMetres(static_cast<int>(h));
-    }
-    RoomSight sight;
-    sight.eye = wearer.room_from_head.position;
-    if (state_.settings().hands) { sight.hands = wearer.hands; }
-    sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand(), meets_m);
-    std::ranges::copy(controls_.things(sight.eye), std::back_inserter(sight.things));
-    sight.arc = controls_.arc();
-    sight.vignette_m = vignette_.widthMetres(views.eyes);
-    message_line_.show(sight, headset().things.layout(), state_.settings().panel, wearer.step_seconds);
-    headset().things.choose(sight);
+    exchange_.meetOther(headset());
+    waiting_.passOver();
+    renderer_.render(headset(), scenes_, drawn_.get(), window_.get(), [this](Commands& commands) {
+        recordPanel(commands);
+        pointing_.record(commands, scenes_, renderer_, state_.sceneFromRoom());
+        kept_picture_.record(commands);
+    });
+    kept_picture_.countFrame();
+    exchange_.sayLive();
+    return true;
 }
 
 void Viewer::renderWaiting() {
@@ -186,14 +163,30 @@ void Viewer::renderWaiting() {
     waiting_.submit(window_.drawn());
 }
 
-void Viewer::showFrame(const FrameViews& views) {
-    headset().images->release();
-    if (headset().inset) { headset().inset_images->release(); }
-    panel_.release(headset());
-    headset().things.release();
-    const bool shares = scenes_.get() != nullptr && drawn_.get().showsOneEye();
-    submission_.end(headset(), views, panel_hangs_ ? &panel_.inRoom() : nullptr,
-                    shares ? std::optional<int>(drawn_.get().stereo.dominant) : std::nullopt);
+void Viewer::recordPanel(Commands& commands) {
+    if (connection_.headset() != nullptr) { headset().things.record(commands); }
+    panel_.record(commands, connection_.headset(), static_cast<bool>(window_));
+    if (window_) { window_.get()->record(commands); }
+}
+
+void Viewer::drawWindowAlone(const std::string& why) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!window_ || now - last_alone_ < kWindowAlone) { return; }
+    const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
+    last_alone_ = now;
+    files_.deliver();
+    takeScenes(true);
+    takeWindowInput(step_seconds);
+    panel_.status().state = why;
+    layOutPanel(false, step_seconds);
+    sayPicture(pictures_.takeOutcome());
+    window_.acquire();
+    if (!window_) { return; }
+    scenes_.passOver(true);
+    recordPanel(waiting_.begin());
+    waiting_.submit(window_.drawn());
+    window_.show();
+    sayChange();
 }
 
 }  // namespace binosplat

@@ -1,40 +1,9 @@
-// The viewer's panel and its window: what they show, and the requests made there.
+// The viewer's panel and the keys of its window: what they show, and what is asked for there.
+#include "app/view/shader_reload.h"
 #include "app/view/viewer.h"
-
 #include "engine/error.h"
 
 namespace binosplat {
-
-namespace {
-
-// How often the window is drawn while there are no frames.
-constexpr std::chrono::milliseconds kWindowAlone(16);
-
-}  // namespace
-
-void Viewer::drawWindowAlone(const std::string& why) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!window_ || now - last_alone_ < kWindowAlone) { return; }
-    const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
-    last_alone_ = now;
-    files_.deliver();
-    if (canTakeScene(false)) {
-        kept_picture_.keepAtOnce();
-        takeScene();
-    }
-    if (scenes_.isOtherReady()) { takeOther(); }
-    takeWindowInput(step_seconds);
-    panel_.status().state = why;
-    layOutPanel(false, step_seconds);
-    sayPicture(pictures_.takeOutcome());
-    window_.acquire();
-    if (!window_) { return; }
-    scenes_.passOver(true);
-    recordPanel(waiting_.begin());
-    waiting_.submit(window_.drawn());
-    window_.show();
-    sayChange();
-}
 
 void Viewer::takeWindowInput(double step_seconds) {
     if (!window_) { return; }
@@ -55,7 +24,7 @@ void Viewer::togglePanel() {
 
 void Viewer::layOutPanel(bool hung, double step_seconds) {
     PanelStatus& status = panel_.status();
-    requests_.fillStatus(other_asked_, place_.viewpoints());
+    requests_.fillStatus(exchange_.otherStays(), place_.viewpoints());
     status.rate = renderer_.rate();
     status.can_pass_through = instance_.canSeeThrough();
     status.takes_depth = instance_.takesDepth();
@@ -78,19 +47,33 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
                               window_.input().uses_panel, state_.settings(), step_seconds));
 }
 
-void Viewer::recordPanel(Commands& commands) {
-    if (connection_.headset() != nullptr) { headset().things.record(commands); }
-    panel_.record(commands, connection_.headset(), static_cast<bool>(window_));
-    if (window_) { window_.get()->record(commands); }
-}
-
 void Viewer::followPanel(const PanelRequests& requests) {
     state_.set(requests.settings);
     if (requests.reload_shaders) { reloadShaders(); }
     if (place_.follow(requests, panel_.entry())) { controls_.letGo(); }
     recentre_asked_ = recentre_asked_ || requests.recentre;
-    openAndSave(requests);
+    requests_.follow(requests);
+    if (requests.show_other) { exchange_.toggleOther(); }
+    picture_asked_ = picture_asked_ || requests.take_picture;
     if (requests.quit) { leave(); }
+}
+
+void Viewer::reloadShaders() {
+    if (scenes_.get() == nullptr || !panel_.status().can_reload_shaders) { return; }
+    // Their threads may be making kernels.
+    if (scenes_.isLoading() || pictures_.isTaking()) {
+        say(fmt::format("shaders stay as they are until {}",
+                        pictures_.isTaking() ? "the picture is written" : "the next scene is loaded"));
+        return;
+    }
+    say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
+        scenes_.rebuildKernels();
+        renderer_.presenter().rebuildKernels();
+    }));
+}
+
+void Viewer::sayPicture(const std::optional<std::string>& outcome) {
+    if (outcome) { say(*outcome); }
 }
 
 }  // namespace binosplat
