@@ -24,9 +24,8 @@ Scene readSogFile(InputFile& file, LoadNotes& notes, const Progress& progress);
 // 65536 rows. Discs stay discs for readers that know "model": "2dgs". The file appears whole or not at all.
 // Throws Error in a build that cannot encode WebP, and for more splats than a picture can have pixels.
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress = {});
-// The same with the splats in the scene's order, for a chunk whose parts are identified by their places.
-void writeSogInOrder(const Scene& scene, const std::string& path, const Progress& progress = {});
-// The same as the files of a new folder: meta.json and pictures. A failure leaves the files written so far.
+// The same as the files of a new folder, meta.json and pictures, with the splats in the scene's order, for a
+// chunk whose parts are identified by their places. A failure leaves the files written so far.
 void writeSogFolder(const Scene& scene, const std::string& folder, const Progress& progress = {});
 // The largest number of rows of harmonics.
 std::size_t sogPaletteSize(const Scene& scene);

@@ -204,15 +204,6 @@ std::vector<NamedBytes> pack(const Scene& scene, const std::string& path, const 
     return all;
 }
 
-void write(const Scene& scene, const std::string& path, const Progress& progress, OrderOf* orderOf) {
-    requireWritable(scene, path);
-    PartFile file(path);
-    const std::vector<std::byte> bundle = packSogBundle(pack(scene, path, progress, orderOf), path);
-    file.write(bundle.data(), bundle.size());
-    file.commit();
-    if (progress) { progress(1.0); }
-}
-
 }  // namespace
 
 // A power of two, so that the rows of the palette's picture are full.
@@ -221,11 +212,12 @@ std::size_t sogPaletteSize(const Scene& scene) {
 }
 
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress) {
-    write(scene, path, progress, mortonOrder);
-}
-
-void writeSogInOrder(const Scene& scene, const std::string& path, const Progress& progress) {
-    write(scene, path, progress, ownOrder);
+    requireWritable(scene, path);
+    PartFile file(path);
+    const std::vector<std::byte> bundle = packSogBundle(pack(scene, path, progress, mortonOrder), path);
+    file.write(bundle.data(), bundle.size());
+    file.commit();
+    if (progress) { progress(1.0); }
 }
 
 void writeSogFolder(const Scene& scene, const std::string& folder, const Progress& progress) {

@@ -28,18 +28,21 @@ struct Asked {
         frame.flags = BSP_FRAME_DEPTH;
     }
     Asked(const Asked&) = delete;
+    // Into the program's image of floats instead, whatever it holds.
+    void drawFloats(const ForeignProgram& program) {
+        target.colour = *program.floats->image;
+        target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+        target.colour_before = VK_IMAGE_LAYOUT_UNDEFINED;
+        target.colour_after = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        target.depth = VK_NULL_HANDLE;
+        target.flags = 0;
+    }
 
     bsp_scene_properties properties;
     bsp_target target = bsp::make<bsp_target>(BSP_TYPE_TARGET);
     bsp_view view;
     bsp_frame_info frame = bsp::frame();
 };
-
-bsp::Scene load(const bsp::Device& device, const std::string& source) {
-    bsp::Scene scene(device, source);
-    scene.wait();
-    return scene;
-}
 
 // Records the frame between the program's own draws; returns its result once the device is done.
 bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& renderer, const Asked& asked,
@@ -49,12 +52,36 @@ bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& rende
     std::uint64_t number = 0;
     bsp::check(bsp_record(renderer.get(), &asked.frame, *commands, &number));
     program.drawSign(commands);
-    const vk::raii::Fence fence(program.device, vk::FenceCreateInfo());
-    program.submit(commands, fence);
-    (void)program.device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+    program.finish(commands);
     auto result = bsp::make<bsp_frame_result>(BSP_TYPE_FRAME_RESULT);
     CHECK(bsp_collect(renderer.get(), number, &result) == BSP_SUCCESS);
     return result;
+}
+
+constexpr float kNothing[4]{};
+
+// Every pixel must show the program's own draws behind its splats: their colour, and how far they are.
+void checkOver(const ForeignProgram& program, float wall_z,
+               const std::function<std::pair<const float*, float>(std::size_t i, bool is_wall)>& splatsAt) {
+    const std::vector<std::uint32_t> seen = program.readWords(*program.colour, kColourUse);
+    const std::vector<float> seen_depths = program.readFloats(*program.depth, kDepthUse, 1);
+    int off = 0, depths_off = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const std::size_t x = i % kSize.x, y = i / kSize.x;
+        const bool is_wall = x < kSize.x / 2, is_sign = x < 4 && y < 4;
+        const auto& [splats, z] = splatsAt(i, is_wall);
+        const std::array<float, 3> own =
+            is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float over = std::clamp(splats[c], 0.0f, 1.0f) + (1.0f - splats[3]) * own[c],
+                        value = is_sign ? 1.0f : std::clamp(over, 0.0f, 1.0f);
+            off += std::abs(static_cast<float>(seen[i] >> (8 * c) & 255) - 255.0f * value) > 1.01f ? 1 : 0;
+        }
+        const float depth = splats[3] >= 0.5f ? kNear / z : is_wall ? kNear / wall_z : 0.0f;
+        depths_off += std::abs(seen_depths[i] - depth) > 1e-4f * depth ? 1 : 0;
+    }
+    CHECK(off == 0);
+    CHECK(depths_off == 0);
 }
 
 TEST_CASE(
@@ -62,7 +89,7 @@ TEST_CASE(
     "draws go on after them") {
     ForeignProgram program;
     const bsp::Device device = program.open();
-    const bsp::Scene scene = load(device, "builtin:atelier");
+    const bsp::Scene scene = loaded(device, "builtin:atelier");
     bsp::Renderer renderer(device);
     Asked asked(program, scene);
     asked.target.flags |= BSP_TARGET_DEPTH_BY_PIXEL;
@@ -79,31 +106,14 @@ TEST_CASE(
     CHECK(result.frames_cut_short == 0);
     CHECK(result.splats_visible > 1000);
 
-    const std::vector<std::uint32_t> seen = program.readWords(*program.colour, kColourUse);
-    const std::vector<float> seen_depths = program.readFloats(*program.depth, kDepthUse, 1);
-    int before = 0, behind = 0, off = 0, depths_off = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        const std::size_t x = i % kSize.x, y = i / kSize.x;
-        const bool is_wall = x < kSize.x / 2;
-        const float* splats = &picture[4 * i];
+    int before = 0, behind = 0;
+    checkOver(program, wall_z, [&](std::size_t i, bool is_wall) {
         const bool is_hidden = !(depths[i] > 0.0f) || (is_wall && depths[i] > wall_z);
         (is_hidden ? behind : before) += is_wall ? 1 : 0;
-        const std::array<float, 3> own =
-            is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
-        const float share = is_hidden ? 0.0f : splats[3];
-        for (std::size_t c = 0; c < 3; ++c) {
-            float value = std::clamp(
-                (is_hidden ? 0.0f : std::clamp(splats[c], 0.0f, 1.0f)) + (1.0f - share) * own[c], 0.0f, 1.0f);
-            if (x < 4 && y < 4) { value = 1.0f; }
-            off += std::abs(static_cast<float>(seen[i] >> (8 * c) & 255) - 255.0f * value) > 1.01f ? 1 : 0;
-        }
-        const float depth = share >= 0.5f ? kNear / depths[i] : is_wall ? kNear / wall_z : 0.0f;
-        depths_off += std::abs(seen_depths[i] - depth) > 1e-4f * depth ? 1 : 0;
-    }
+        return std::pair(is_hidden ? kNothing : &picture[4 * i], depths[i]);
+    });
     CHECK(before > 100);
     CHECK(behind > 100);
-    CHECK(off == 0);
-    CHECK(depths_off == 0);
 }
 
 // Translucent discs that face an eye at the origin, in layers from near to far; only those nearer than `end`.
@@ -155,28 +165,12 @@ TEST_CASE("a wall through a cloud hides at every pixel the splats behind it and 
     const auto [of_all, all_depths] = draw(all);
     bsp::check(bsp_prepare(renderer.get(), &asked.frame));
     (void)drawBetween(program, renderer, asked, kNear / kWall);
-    const std::vector<std::uint32_t> seen = program.readWords(*program.colour, kColourUse);
-    const std::vector<float> seen_depths = program.readFloats(*program.depth, kDepthUse, 1);
-    int differ = 0, off = 0, depths_off = 0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        const std::size_t x = i % kSize.x, y = i / kSize.x;
-        if (x < 4 && y < 4) { continue; }  // the white square
-        const bool is_wall = x < kSize.x / 2;
-        const float *splats = is_wall ? &of_nearer[4 * i] : &of_all[4 * i],
-                    z = is_wall ? nearer_depths[i] : all_depths[i];
-        const std::array<float, 3> own =
-            is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float value =
-                std::clamp(std::clamp(splats[c], 0.0f, 1.0f) + (1.0f - splats[3]) * own[c], 0.0f, 1.0f);
-            off += std::abs(static_cast<float>(seen[i] >> (8 * c) & 255) - 255.0f * value) > 1.01f ? 1 : 0;
-        }
-        const float depth = splats[3] >= 0.5f ? kNear / z : is_wall ? kNear / kWall : 0.0f;
-        depths_off += std::abs(seen_depths[i] - depth) > 1e-4f * depth ? 1 : 0;
+    int differ = 0;
+    checkOver(program, kWall, [&](std::size_t i, bool is_wall) {
         differ += is_wall && std::abs(of_nearer[4 * i + 3] - of_all[4 * i + 3]) > 0.05f ? 1 : 0;
-    }
-    CHECK(off == 0);
-    CHECK(depths_off == 0);
+        return is_wall ? std::pair(&of_nearer[4 * i], nearer_depths[i])
+                       : std::pair(&of_all[4 * i], all_depths[i]);
+    });
     CHECK(differ > 100);  // pixels of the wall with splats in front of it and behind it
 }
 
@@ -185,15 +179,10 @@ TEST_CASE(
     "another renderer draws") {
     ForeignProgram program;
     const bsp::Device device = program.open();
-    const bsp::Scene scene = load(device, "builtin:fence");
+    const bsp::Scene scene = loaded(device, "builtin:fence");
     bsp::Renderer renderer(device), other(device);
     Asked asked(program, scene);
-    asked.target.colour = *program.floats->image;
-    asked.target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT;
-    asked.target.colour_before = VK_IMAGE_LAYOUT_UNDEFINED;
-    asked.target.colour_after = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    asked.target.depth = VK_NULL_HANDLE;
-    asked.target.flags = 0;
+    asked.drawFloats(program);
     asked.frame.background[2] = 0.25;
     other.render(asked.frame);
     const std::vector<float> expected = other.colour(asked.view, 0).values;
@@ -215,7 +204,7 @@ TEST_CASE(
     "a frame that is discarded takes nothing along: what moved before it is where it should be in the next") {
     ForeignProgram program;
     const bsp::Device device = program.open();
-    const bsp::Scene scene = load(device, "builtin:fence"), other = load(device, "builtin:one-splat");
+    const bsp::Scene scene = loaded(device, "builtin:fence"), other = loaded(device, "builtin:one-splat");
     bsp::Renderer renderer(device), exact(device);
     Asked asked(program, scene);
     std::array instances{bsp::make<bsp_instance>(BSP_TYPE_INSTANCE),
@@ -225,12 +214,7 @@ TEST_CASE(
     asked.frame.scene = nullptr;
     asked.frame.instances = instances.data();
     asked.frame.instance_count = 2;
-    asked.target.colour = *program.floats->image;
-    asked.target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT;
-    asked.target.colour_before = VK_IMAGE_LAYOUT_UNDEFINED;
-    asked.target.colour_after = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    asked.target.depth = VK_NULL_HANDLE;
-    asked.target.flags = 0;
+    asked.drawFloats(program);
     std::uint64_t number = 0;
     for (const double x : {0.9, 0.3, 0.6, 0.9}) {
         instances[0].position[0] = x;
@@ -242,9 +226,7 @@ TEST_CASE(
     exact.render(asked.frame);
     const vk::raii::CommandBuffer commands = program.begin();
     bsp::check(bsp_record(renderer.get(), &asked.frame, *commands, &number));
-    const vk::raii::Fence fence(program.device, vk::FenceCreateInfo());
-    program.submit(commands, fence);
-    (void)program.device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+    program.finish(commands);
     bsp::check(bsp_collect(renderer.get(), number, nullptr));
     CHECK(program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4) ==
           exact.colour(asked.view, 0).values);
@@ -255,7 +237,8 @@ TEST_CASE(
     "would draw alone") {
     ForeignProgram program;
     const bsp::Device first = program.open(), second = program.open();
-    const bsp::Scene of_first = load(first, "builtin:one-splat"), of_second = load(second, "builtin:fence");
+    const bsp::Scene of_first = loaded(first, "builtin:one-splat"),
+                     of_second = loaded(second, "builtin:fence");
     bsp::Renderer renderer(first), other(second);
     Asked asked(program, of_first), asked_other(program, of_second);
     asked_other.view = asked.view;
@@ -273,9 +256,7 @@ TEST_CASE(
         if (of_one) { bsp::check(bsp_record(renderer.get(), &asked.frame, *commands, &numbers[0])); }
         if (of_other) { bsp::check(bsp_record(other.get(), &asked_other.frame, *commands, &numbers[1])); }
         program.drawSign(commands);
-        const vk::raii::Fence fence(program.device, vk::FenceCreateInfo());
-        program.submit(commands, fence);
-        (void)program.device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+        program.finish(commands);
         if (of_one) { bsp::check(bsp_collect(renderer.get(), numbers[0], nullptr)); }
         if (of_other) { bsp::check(bsp_collect(other.get(), numbers[1], nullptr)); }
         return program.readWords(*program.colour, kColourUse);
@@ -299,7 +280,7 @@ TEST_CASE(
     "is said by the layers") {
     ForeignProgram program;
     const bsp::Device device = program.open();
-    const bsp::Scene small = load(device, "builtin:one-splat");
+    const bsp::Scene small = loaded(device, "builtin:one-splat");
     std::optional<bsp::Scene> large(std::in_place, device, "builtin:fence");
     bsp::Renderer renderer(device);
     const auto pair = small.startViews(0.063, 1.2, kSize.x, kSize.y);
@@ -348,18 +329,12 @@ TEST_CASE(
 TEST_CASE("a device without what is needed is refused by its name, and so is a target that makes no sense") {
     {
         ForeignProgram lacking(false);
-        try {
-            (void)lacking.open();
-            FAIL_CHECK("it was opened");
-        } catch (const bsp::Error& error) {
-            CHECK(error.code() == BSP_ERROR_NO_DEVICE);
-            CHECK(std::string(error.what()).find("bufferDeviceAddress and scalarBlockLayout") !=
-                  std::string::npos);
-        }
+        checkRefused([&] { (void)lacking.open(); }, BSP_ERROR_NO_DEVICE,
+                     "bufferDeviceAddress and scalarBlockLayout");
     }
     ForeignProgram program;
     const bsp::Device device = program.open();
-    const bsp::Scene scene = load(device, "builtin:one-splat");
+    const bsp::Scene scene = loaded(device, "builtin:one-splat");
     bsp::Renderer renderer(device);
     const vk::raii::CommandBuffer commands = program.begin();
     const auto refused = [&](const std::function<void(Asked&)>& change, const std::string& part) {
@@ -367,7 +342,7 @@ TEST_CASE("a device without what is needed is refused by its name, and so is a t
         change(asked);
         std::uint64_t number = 0;
         CHECK(bsp_record(renderer.get(), &asked.frame, *commands, &number) == BSP_ERROR_INPUT);
-        CHECK_MESSAGE(std::string(bsp_error_text()).find(part) != std::string::npos, bsp_error_text());
+        CHECK_MESSAGE(contains(bsp_error_text(), part), bsp_error_text());
     };
     refused([](Asked& asked) { asked.view.next = nullptr; }, "view 0 has no bsp_target");
     refused([](Asked& asked) { asked.frame.background[0] = 1.0; }, "background");

@@ -172,6 +172,12 @@ void ForeignProgram::submit(const vk::raii::CommandBuffer& commands, const vk::r
     queue.submit(vk::SubmitInfo({}, {}, buffer), *fence);
 }
 
+void ForeignProgram::finish(const vk::raii::CommandBuffer& commands) const {
+    const vk::raii::Fence fence(device, vk::FenceCreateInfo());
+    submit(commands, fence);
+    (void)device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+}
+
 std::vector<std::byte> ForeignProgram::read(const ForeignImage& image, vk::ImageLayout layout,
                                             std::uint64_t bytes) const {
     const vk::raii::Buffer buffer(device,
@@ -193,9 +199,7 @@ std::vector<std::byte> ForeignProgram::read(const ForeignImage& image, vk::Image
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {},
                              to_host, {}, {});
-    const vk::raii::Fence fence(device, vk::FenceCreateInfo());
-    submit(commands, fence);
-    (void)device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+    finish(commands);
     const auto* mapped = static_cast<const std::byte*>(memory.mapMemory(0, VK_WHOLE_SIZE));
     return {mapped, mapped + bytes};
 }

@@ -1,10 +1,9 @@
 // A Vulkan program of its own: an instance under the validation layers, a device, a picture and its depth.
 #pragma once
 
-#include "tests/suite.h"
+#include "tests/engine/library/library_runs.h"
 
 #include <binosplat_vulkan.h>
-#include <binosplat.hpp>
 #include <vulkan/vulkan_raii.hpp>
 
 namespace binosplat::test {
@@ -41,6 +40,8 @@ public:
                                                        vk::ImageLayout layout) const;
     [[nodiscard]] vk::raii::CommandBuffer begin() const;
     void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) const;
+    // Submits, and waits until it is done.
+    void finish(const vk::raii::CommandBuffer& commands) const;
 
     mutable std::mutex queue_mutex, messages_mutex;
     std::vector<std::string> messages;  // from the layers

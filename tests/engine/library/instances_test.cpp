@@ -2,56 +2,26 @@
 // the library.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
+#include "engine/scene/pick_splats.h"
 #include "engine/scene/sh_turn.h"
 #include "engine/similarity.h"
-#include "tests/run_program.h"
+#include "tests/engine/library/library_runs.h"
 
 #ifdef BINOSPLAT_HAS_SPLIT_SCENE
 #include "tests/engine/stream/split_scene.h"
 #endif
 
-#include <binosplat.hpp>
-
 SUITE(instances) {
 
-struct Opened : Workplace {
-    Opened() {
-        auto info = bsp::make<bsp_device_info>(BSP_TYPE_DEVICE_INFO);
-        info.validation = BINOSPLAT_TEST_VALIDATION ? 1 : 0;
-        info.log = [](void* user, const char* line) {
-            static_cast<std::vector<std::string>*>(user)->emplace_back(line);
-        };
-        info.log_user = &lines;
-        device.emplace(info);
-        renderer.emplace(*device);
-    }
-    ~Opened() {
-        renderer.reset();
-        device.reset();
-        std::erase_if(lines, [](const std::string& line) {
-            return line.find("Vulkan validation") == std::string::npos;
-        });
-        CHECK(lines == std::vector<std::string>());
-    }
-    [[nodiscard]] bsp::Scene load(const std::string& source, std::uint32_t live = 0) const {
-        auto info = bsp::make<bsp_scene_info>(BSP_TYPE_SCENE_INFO);
-        info.source = source.c_str();
-        info.live = live;
-        info.rate_hz = 10.0;
-        bsp::Scene scene(*device, info);
-        scene.wait();
-        return scene;
-    }
+struct Drawn : Opened {
+    Drawn() { unwanted = "Vulkan validation"; }
+    using Opened::load;
     [[nodiscard]] bsp::Scene load(const Scene& scene) const {
         static int number = 0;
         const fs::path file = path / fmt::format("scene{}.ply", ++number);
         writePly(scene, file.string());
         return load(file.string());
     }
-
-    std::vector<std::string> lines;
-    std::optional<bsp::Device> device;
-    std::optional<bsp::Renderer> renderer;
 };
 
 bsp_instance instanceOf(const bsp::Scene& scene, const Similarity& at = {}) {
@@ -114,16 +84,6 @@ Scene placeByHand(Scene scene, const Similarity& at) {
     return scene;
 }
 
-void appendTo(Scene& scene, const Scene& more) {
-    const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-    add(scene.positions, more.positions);
-    add(scene.rotations, more.rotations);
-    add(scene.scales, more.scales);
-    add(scene.thicknesses, more.thicknesses);
-    add(scene.opacities, more.opacities);
-    add(scene.sh, more.sh);
-}
-
 // Some splats with harmonics of every band.
 Scene colourful(std::size_t splats, std::uint32_t seed, int sh_degree, bool gaussians) {
     Scene scene;
@@ -152,7 +112,7 @@ bsp::Views viewsAt(double aside = 0.0) {
 }
 
 TEST_CASE_FIXTURE(
-    Opened, "an instance that is placed where its file has it is the scene to the last bit, in every mode") {
+    Drawn, "an instance that is placed where its file has it is the scene to the last bit, in every mode") {
     const bsp::Scene room = load(makeBuiltin("builtin:atelier", 3000));
     const bsp::Views views = room.startViews(0.063, 1.2, 96, 64);
     for (const bsp_mode mode : {BSP_MODE_TWO_PASS, BSP_MODE_SHARED, BSP_MODE_PAPER, BSP_MODE_PREDICTED}) {
@@ -162,25 +122,16 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(
-    Opened,
+    Drawn,
     "instances of discs and of Gaussians are what their splats turned, moved and scaled by hand make") {
     const Similarity left{glm::normalize(glm::dquat(0.8, 0.3, -0.4, 0.2)), {-1.1, 0.2, 0.3}, 0.7},
         right{{1, 0, 0, 0}, {1.0, -0.1, 0.5}, 1.0},
         far{glm::normalize(glm::dquat(0.1, -0.5, 0.6, 0.9)), {0.2, 0.3, 3.0}, 2.0};
     for (const bool gaussians : {false, true}) {
         const Scene three_bands = colourful(900, 1, 3, gaussians), one_band = colourful(700, 2, 1, gaussians);
-        Scene by_hand = placeByHand(three_bands, left), second = one_band;
-        const std::size_t missing =
-            3 * static_cast<std::size_t>(shCoefficientCount(3) - shCoefficientCount(1));
-        Scene widened = second;
-        widened.sh.clear();
-        widened.sh_degree = 3;
-        for (std::size_t i = 0; i < second.size(); ++i) {
-            widened.sh.insert(widened.sh.end(), &second.sh[12 * i], &second.sh[12 * i] + 12);
-            widened.sh.insert(widened.sh.end(), missing, 0.0f);
-        }
-        appendTo(by_hand, placeByHand(widened, right));
-        appendTo(by_hand, placeByHand(three_bands, far));
+        Scene by_hand = placeByHand(three_bands, left);
+        appendSplats(by_hand, placeByHand(one_band, right));
+        appendSplats(by_hand, placeByHand(three_bands, far));
         const bsp::Scene first = load(three_bands), other = load(one_band), all = load(by_hand);
         const std::vector<bsp_instance> instances{instanceOf(first, left), instanceOf(other, right),
                                                   instanceOf(first, far)};
@@ -194,7 +145,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Opened,
+TEST_CASE_FIXTURE(Drawn,
                   "a hidden instance is not there, one that moves leaves nothing behind in temporal, and "
                   "another's coming is a cut") {
     const bsp::Scene one = load(colourful(800, 3, 2, false)), other = load(colourful(500, 4, 0, false));
@@ -224,18 +175,11 @@ TEST_CASE_FIXTURE(Opened,
 }
 
 TEST_CASE_FIXTURE(
-    Opened,
-    "scenes that cannot be drawn together, and placements that make no sense, are refused in a line") {
+    Drawn, "scenes that cannot be drawn together, and placements that make no sense, are refused in a line") {
     const bsp::Scene discs = load(colourful(10, 5, 0, false)), gaussians = load(colourful(10, 6, 0, true));
     const auto refused = [&](bsp_frame_info frame, const std::vector<bsp_instance>& instances,
                              const std::string& part) {
-        try {
-            (void)draw(*renderer, frame, viewsAt(), instances);
-            FAIL_CHECK("nothing was refused: " << part);
-        } catch (const bsp::Error& error) {
-            CHECK(error.code() == BSP_ERROR_INPUT);
-            CHECK_MESSAGE(std::string(error.what()).find(part) != std::string::npos, error.what());
-        }
+        checkRefused([&] { (void)draw(*renderer, frame, viewsAt(), instances); }, BSP_ERROR_INPUT, part);
     };
     const bsp_frame_info frame = frameOf(BSP_MODE_SHARED);
     refused(frame, {instanceOf(discs), instanceOf(gaussians)}, "all discs, all Gaussians");
@@ -255,7 +199,7 @@ TEST_CASE_FIXTURE(
                          draw(*renderer, frameOf(BSP_MODE_SHARED, discs.get()), viewsAt(), {})) == 0.0);
 }
 
-TEST_CASE_FIXTURE(Opened, "a frame with foveation is exact where the eye looks, and blends fewer pairs") {
+TEST_CASE_FIXTURE(Drawn, "a frame with foveation is exact where the eye looks, and blends fewer pairs") {
     const bsp::Scene room = load(makeBuiltin("builtin:atelier", 20000));
     const bsp::Views views = room.startViews(0.063, 1.6, 256, 256);
     bsp_frame_info frame = frameOf(BSP_MODE_TEMPORAL, room.get());
@@ -274,7 +218,7 @@ TEST_CASE_FIXTURE(Opened, "a frame with foveation is exact where the eye looks, 
     CHECK(all > 0.0);
 }
 
-TEST_CASE_FIXTURE(Opened, "an error bound leaves tiles that are good enough, and a higher one leaves fewer") {
+TEST_CASE_FIXTURE(Drawn, "an error bound leaves tiles that are good enough, and a higher one leaves fewer") {
     const bsp::Scene room = load(makeBuiltin("builtin:atelier", 20000));
     bsp_frame_info frame = frameOf(BSP_MODE_TEMPORAL, room.get());
     frame.budget = 1.0;
@@ -297,7 +241,7 @@ TEST_CASE_FIXTURE(Opened, "an error bound leaves tiles that are good enough, and
     CHECK(work[1] < 0.9 * work[2]);
 }
 
-TEST_CASE_FIXTURE(Opened, "a scene that moves shows the file of its time, alone and as an instance") {
+TEST_CASE_FIXTURE(Drawn, "a scene that moves shows the file of its time, alone and as an instance") {
     fs::create_directory(path / "film");
     std::vector<Scene> files;
     for (int i = 0; i < 3; ++i) {
@@ -323,7 +267,7 @@ TEST_CASE_FIXTURE(Opened, "a scene that moves shows the file of its time, alone 
 
 #ifdef BINOSPLAT_HAS_SPLIT_SCENE
 TEST_CASE_FIXTURE(
-    Opened,
+    Drawn,
     "a streamed scene brings what the views ask for, frame by frame, and settled it is the whole of it") {
     const Scene room = makeBuiltin("builtin:atelier", 20000);
     test::splitScene(room, (path / "streamed").string(),

@@ -62,11 +62,16 @@ struct Drawing {
     bsp_frame_info frame = bsp::frame();
 };
 
+void waitFor(const bsp::Renderer& renderer, std::uint64_t frame) {
+    while (bsp_collect(renderer.get(), frame, nullptr) == BSP_NOT_READY) { std::this_thread::yield(); }
+}
+
 // The right eye, which comes last.
-std::vector<float> drawOnce(const ForeignProgram& program, bsp::Renderer& renderer, const Drawing& drawing) {
+std::vector<float> drawOnce(const ForeignProgram& program, const bsp::Renderer& renderer,
+                            const Drawing& drawing) {
     std::uint64_t number = 0;
     bsp::check(bsp_submit(renderer.get(), &drawing.frame, nullptr, &number));
-    while (bsp_collect(renderer.get(), number, nullptr) == BSP_NOT_READY) { std::this_thread::yield(); }
+    waitFor(renderer, number);
     return program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4);
 }
 
@@ -75,8 +80,7 @@ int checkFailures(int step, int first = 1) {
     Faults faults;
     const ForeignProgram& program = *faults.program;
     const bsp::Device device = faults.program->open();
-    bsp::Scene scene(device, "builtin:fence");
-    scene.wait();
+    const bsp::Scene scene = loaded(device, "builtin:fence");
     const Drawing drawing(program, scene);
     const auto drawAlone = [&] {
         bsp::Renderer renderer(device);
@@ -97,9 +101,7 @@ int checkFailures(int step, int first = 1) {
              std::string(bsp_error_text()));
         if (call == nullptr) {
             CHECK(result == BSP_SUCCESS);
-            while (bsp_collect(renderer.get(), frame, nullptr) == BSP_NOT_READY) {
-                std::this_thread::yield();
-            }
+            waitFor(renderer, frame);
             return failed;
         }
         ++failed;
@@ -125,8 +127,7 @@ TEST_CASE("so is each" * nightly()) { CHECK(checkFailures(1) >= 90); }
 TEST_CASE("of a device that is lost, every call says so of a submission") {
     Faults faults;
     const bsp::Device device = faults.program->open();
-    bsp::Scene scene(device, "builtin:one-splat");
-    scene.wait();
+    const bsp::Scene scene = loaded(device, "builtin:one-splat");
     const Drawing drawing(*faults.program, scene);
     bsp::Renderer renderer(device);
     (void)drawOnce(*faults.program, renderer, drawing);
@@ -140,9 +141,9 @@ TEST_CASE("of a device that is lost, every call says so of a submission") {
         INFO(std::string(struck), ": ", std::string(bsp_error_text()));
         if (std::string(struck) != "vkQueueSubmit") { continue; }
         CHECK(result == BSP_ERROR_DEVICE_LOST);
-        CHECK(std::string(bsp_error_text()).find("lost") != std::string::npos);
+        CHECK(contains(bsp_error_text(), "lost"));
     }
-    while (bsp_collect(renderer.get(), number, nullptr) == BSP_NOT_READY) { std::this_thread::yield(); }
+    waitFor(renderer, number);
 }
 
 }  // SUITE(library_faults)
