@@ -11,12 +11,10 @@ SUITE(moving_scene) {
 constexpr int kFrames = 6;
 constexpr double kRate = 10.0;
 
-std::array<Eye, 2> atelierEyes() {
-    const View view = *builtinView("atelier");
-    return stereoPair({lookAt(view.eye, view.look, view.up),
-                       intrinsicsFromFovX(glm::radians(view.fov_x_deg), {160, 160}),
-                       {160, 160}},
-                      0.063);
+std::array<Eye, 2> atelierEyes(glm::uvec2 size_px = {160, 160}, double aside = 0.0) {
+    Eye middle = eyeOf(*builtinView("atelier"), size_px);
+    middle.world_from_camera.position.x += aside;
+    return stereoPair(middle, 0.063);
 }
 
 FrameSettings settingsOf(Mode mode, bool keep_history = false) {
@@ -39,6 +37,11 @@ Image pictureOf(const Context& context, const Scene& scene) {
 // Halfway through a scene frame.
 double timeOf(double frame) { return (frame + 0.5) / kRate; }
 
+void settleAt(MovingScene& moving, double time_s) {
+    moving.setTime(time_s);
+    moving.settle({});
+}
+
 // Until the scene for this time is shown, or as much of it as there is.
 template <typename Is>
 void updateUntil(MovingScene& scene, const Is& is) {
@@ -56,8 +59,7 @@ double worstFromHistories(MovingScene& moving, double back_m, int frames) {
     for (Eye& eye : eyes) { eye.world_from_camera.position.z -= back_m; }
     double worst_db = 1000.0;
     for (int step = 0; step < frames; ++step) {
-        moving.setTime(static_cast<double>(step) / (4.0 * kRate));
-        moving.settle({});
+        settleAt(moving, static_cast<double>(step) / (4.0 * kRate));
         (void)temporal.render(eyes, settingsOf(Mode::kTemporal, true));
         if (step < 8) { continue; }
         (void)full.render(eyes, settingsOf(Mode::kShared));
@@ -77,6 +79,10 @@ struct Sliding : Gpu {
     [[nodiscard]] std::string fileOf(int frame) const {
         return folder.file(fmt::format("slide/frame_{:04}.ply", frame + 1));
     }
+    // To the bit.
+    void checkShows(StereoFrame& frame, int file) const {
+        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(file))).values);
+    }
 
     Folder folder;
 };
@@ -89,11 +95,9 @@ TEST_CASE_FIXTURE(Sliding,
     KeptFrame frame(context(), moving->scene());
     for (const int at : {0, 3, 2, 5, 6, 13, -1}) {
         CAPTURE(at);
-        moving->setTime(timeOf(at));
+        settleAt(*moving, timeOf(at));
         CHECK(moving->frameAt(timeOf(at)) == static_cast<std::size_t>((at + kFrames) % kFrames));
-        moving->settle({});
-        CHECK(pictureOf(frame).values ==
-              pictureOf(context(), loadScene(fileOf((at + kFrames) % kFrames))).values);
+        checkShows(frame, (at + kFrames) % kFrames);
     }
     CHECK(moving->isSettled());
     CHECK(these(moving->counters().scene_frames_late, moving->counters().splats_read,
@@ -103,15 +107,13 @@ TEST_CASE_FIXTURE(Sliding,
 TEST_CASE_FIXTURE(Sliding, "between two frames there is what lies between their splats, if asked for") {
     const auto moving = open({.blend = true});
     KeptFrame frame(context(), moving->scene());
-    moving->setTime(2.25 / kRate);
-    moving->settle({});
+    settleAt(*moving, 2.25 / kRate);
     const Image between = pictureOf(frame), wanted = pictureOf(context(), slidingAtelier(2.25));
     CHECK(compare(between, wanted).psnrDb() > 60.0);
     CHECK(compare(between, pictureOf(context(), slidingAtelier(2.0))).psnrDb() < 50.0);
     // Files may end differently from how they began.
-    moving->setTime((kFrames - 0.5) / kRate);
-    moving->settle({});
-    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(kFrames - 1))).values);
+    settleAt(*moving, (kFrames - 0.5) / kRate);
+    checkShows(frame, kFrames - 1);
 }
 
 TEST_CASE_FIXTURE(Sliding, "frames go on while the next is read, which is late at most once") {
@@ -155,7 +157,7 @@ TEST_CASE_FIXTURE(Sliding,
     holds = false;
     holds.notify_all();
     updateUntil(*moving, [&] { return pictureOf(frame).values != first.values; });
-    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(5))).values);
+    checkShows(frame, 5);
     CHECK(moving->counters().scene_frames_late == 1);
 }
 
@@ -173,14 +175,12 @@ TEST_CASE_FIXTURE(
             for (std::string& line : moving->takeLines(Waits::kNever)) { lines.push_back(std::move(line)); }
             return at == 2 ? !moving->isSettled() && !lines.empty() : moving->isSettled();
         });
-        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(at == 2 ? 1 : at))).values);
+        checkShows(frame, at == 2 ? 1 : at);
     }
     CHECK(lines.size() == 1);
-    moving->setTime(timeOf(2));
-    CHECK_THROWS_AS(moving->settle({}), Error);
-    moving->setTime(timeOf(4));
-    moving->settle({});
-    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(4))).values);
+    CHECK_THROWS_AS(settleAt(*moving, timeOf(2)), Error);
+    settleAt(*moving, timeOf(4));
+    checkShows(frame, 4);
 }
 
 TEST_CASE_FIXTURE(Sliding, "frames may have more splats or fewer, as far as the sizes of files let expect") {
@@ -190,16 +190,13 @@ TEST_CASE_FIXTURE(Sliding, "frames may have more splats or fewer, as far as the 
     KeptFrame frame(context(), moving->scene());
     for (const int at : {0, 2, 3, 0, 3, 2, 0}) {
         CAPTURE(at);
-        moving->setTime(timeOf(at));
-        moving->settle({});
-        const Scene whole = loadScene(fileOf(at));
-        CHECK(moving->counters().splats_resident == whole.size());
-        CHECK(pictureOf(frame).values == pictureOf(context(), whole).values);
+        settleAt(*moving, timeOf(at));
+        CHECK(moving->counters().splats_resident == loadScene(fileOf(at)).size());
+        checkShows(frame, at);
     }
     // A file that has grown since its size was read.
     writePly(slidingAtelier(4, 60'000), fileOf(4));
-    moving->setTime(timeOf(4));
-    CHECK_THROWS_WITH_AS(moving->settle({}), doctest::Contains("there is room for"), Error);
+    CHECK_THROWS_WITH_AS(settleAt(*moving, timeOf(4)), doctest::Contains("there is room for"), Error);
 }
 
 TEST_CASE_FIXTURE(Sliding, "pictures that are made from their histories show what moves") {
@@ -217,88 +214,84 @@ TEST_CASE_FIXTURE(Sliding, "what stays equal costs pictures that are made from t
     (void)pictureOf(frame);
     const std::uint64_t before = still->scene().changesRecorded();
     for (int at = 1; at < kFrames; ++at) {
-        still->setTime(timeOf(at));
-        still->settle({});
+        settleAt(*still, timeOf(at));
         CHECK(still->isSettled());
         (void)pictureOf(frame);
     }
     CHECK(still->scene().changesRecorded() == before);
 }
 
-TEST_CASE_FIXTURE(Gpu,
+// A film of which no more than the next frames are in memory, and two frames of it.
+struct Film : Gpu {
+    void open(int frames, const std::function<Scene(int frame)>& frameAt) {
+        writeFilm(folder.file("film"), frames, frameAt);
+        scene.emplace(context(), SceneSeries(folder.file("film")),
+                      MovingSettings{.rate_hz = kRate, .memory_bytes = 1});
+        frame.emplace(context(), scene->scene());
+        other.emplace(context(), scene->scene());
+    }
+    void checkNotCutShort() {
+        const std::optional<FrameResult> last = frame->finish();
+        REQUIRE(last.has_value());
+        REQUIRE(last->counters.ahead.has_value());
+        CHECK(last->counters.ahead->frames_cut_short == 0);
+    }
+
+    static constexpr glm::uvec2 kSize{192, 144};
+    const Folder folder;
+    std::optional<MovingScene> scene;
+    std::optional<KeptFrame> frame, other;
+    const FrameSettings temporal = settingsOf(Mode::kTemporal, true), full = settingsOf(Mode::kShared);
+};
+
+TEST_CASE_FIXTURE(Film,
                   "where most of the picture changes both eyes are rendered in full, and the frames after it "
                   "have histories again") {
-    const Folder folder;
-    writeFilm(folder.file("film"), 3, [](int frame) { return shakenAtelier(frame, 2); });
-    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
-    KeptFrame temporal(context(), moving.scene()), other(context(), moving.scene());
-    const Eye middle = eyeOf(*builtinView("atelier"), {192, 144});
+    open(3, [](int at) { return shakenAtelier(at, 2); });
     for (const double at : {0.0, 0.2, 1.0, 2.0, 2.2, 2.4}) {
         CAPTURE(at);
-        moving.setTime(timeOf(at));
-        moving.settle({});
-        Eye eye = middle;
-        eye.world_from_camera.position.x += 0.01 * at;
-        const FrameResult result = temporal.render(stereoPair(eye, 0.063), settingsOf(Mode::kTemporal, true));
-        const FrameResult full = other.render(stereoPair(eye, 0.063), settingsOf(Mode::kShared));
+        settleAt(*scene, timeOf(at));
+        const std::array<Eye, 2> eyes = atelierEyes(kSize, 0.01 * at);
+        const FrameResult result = frame->render(eyes, temporal), whole = other->render(eyes, full);
         const bool has_history = at != 0.0 && at != 2.0;
         for (const int e : {kLeft, kRight}) {
-            CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_history);
+            CHECK((frame->readPicture(e).values == other->readPicture(e).values) == !has_history);
         }
-        CHECK((result.counters.targets[kLeft].tile_pairs == full.counters.targets[kLeft].tile_pairs) ==
+        CHECK((result.counters.targets[kLeft].tile_pairs == whole.counters.targets[kLeft].tile_pairs) ==
               !has_history);
     }
 }
 
 TEST_CASE_FIXTURE(
-    Gpu,
+    Film,
     "frames under way have room for what changes, whether it is less or more than a history is kept for") {
-    const Folder folder;
-    writeFilm(folder.file("film"), 9, [](int frame) { return shakenAtelier(frame, 5); });
-    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
-    KeptFrame ahead(context(), moving.scene()), waited(context(), moving.scene());
-    const Eye middle = eyeOf(*builtinView("atelier"), {192, 144});
-    const FrameSettings settings = settingsOf(Mode::kTemporal, true);
+    open(9, [](int at) { return shakenAtelier(at, 5); });
     for (int step = 0; step < 16; ++step) {
         // A different scene frame every second display frame, and in three in a row.
         const int at = step < 8 ? step / 2 : step - 4;
-        moving.setTime(timeOf(std::min(at, 8)));
-        moving.settle({});
-        Eye eye = middle;
-        eye.world_from_camera.position.x += 0.004 * step;
-        (void)ahead.renderAhead(stereoPair(eye, 0.063), settings);
-        (void)waited.render(stereoPair(eye, 0.063), settings);
+        settleAt(*scene, timeOf(std::min(at, 8)));
+        (void)frame->renderAhead(atelierEyes(kSize, 0.004 * step), temporal);
+        (void)other->render(atelierEyes(kSize, 0.004 * step), temporal);
     }
-    const std::optional<FrameResult> last = ahead.finish();
-    REQUIRE(last.has_value());
-    REQUIRE(last->counters.ahead.has_value());
-    CHECK(last->counters.ahead->frames_cut_short == 0);
-    CHECK(shownBy(ahead) == shownBy(waited));
+    checkNotCutShort();
+    CHECK(shownBy(*frame) == shownBy(*other));
 }
 
 TEST_CASE_FIXTURE(
-    Gpu,
+    Film,
     "a frame that changes make a full one waits for room, however much more it needs than the patch before") {
-    const Folder folder;
-    writeFilm(folder.file("film"), 3, [](int frame) {
-        Scene scene = shakenAtelier(0, 2);
-        for (glm::vec2& scale : scene.scales) { scale *= frame == 2 ? 4.0f : 1.0f; }
-        return scene;
+    open(3, [](int at) {
+        Scene made = shakenAtelier(0, 2);
+        for (glm::vec2& scale : made.scales) { scale *= at == 2 ? 4.0f : 1.0f; }
+        return made;
     });
-    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
-    KeptFrame ahead(context(), moving.scene()), full(context(), moving.scene());
-    const std::array<Eye, 2> eyes = stereoPair(eyeOf(*builtinView("atelier"), {192, 144}), 0.063);
     for (int step = 0; step < 8; ++step) {
-        moving.setTime(timeOf(step < 6 ? 0.25 * step : 2.0));
-        moving.settle({});
-        (void)ahead.renderAhead(eyes, settingsOf(Mode::kTemporal, true));
+        settleAt(*scene, timeOf(step < 6 ? 0.25 * step : 2.0));
+        (void)frame->renderAhead(atelierEyes(kSize), temporal);
     }
-    const std::optional<FrameResult> last = ahead.finish();
-    REQUIRE(last.has_value());
-    REQUIRE(last->counters.ahead.has_value());
-    CHECK(last->counters.ahead->frames_cut_short == 0);
-    (void)full.render(eyes, settingsOf(Mode::kShared));
-    CHECK(compare(ahead.readPicture(kLeft), full.readPicture(kLeft), 3).psnrDb() > 40.0);
+    checkNotCutShort();
+    (void)other->render(atelierEyes(kSize), full);
+    CHECK(compare(frame->readPicture(kLeft), other->readPicture(kLeft), 3).psnrDb() > 40.0);
 }
 
 }  // SUITE(moving_scene)
