@@ -3,6 +3,7 @@
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/engine/files/ksplat_files.h"
+#include "tests/engine/scene/scene_measures.h"
 #include "tests/hostile.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/files/streamed_scenes.h"
@@ -33,21 +34,9 @@ Target partOf(Target target, std::size_t begin, std::size_t end = std::string::n
 }
 
 void checkWhole(const Scene& scene, std::size_t most_splats) {
-    const std::size_t splats = scene.size();
-    bool whole =
-        splats <= most_splats && scene.rotations.size() == splats && scene.scales.size() == splats &&
-        scene.opacities.size() == splats &&
-        scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
-    for (std::size_t i = 0; whole && i < splats; ++i) {
-        const glm::vec3& p = scene.positions[i];
-        whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) &&
-                std::isfinite(scene.scales[i].x) && std::isfinite(scene.scales[i].y) &&
-                scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
-                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f &&
-                scene.opacities[i] <= 1.0f;
+    if (scene.size() > most_splats || !isSound(scene)) {
+        FAIL_CHECK("a scene with values that are not to be");
     }
-    for (const float value : scene.sh) { whole = whole && std::isfinite(value); }
-    if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
 }
 
 // One in `stride` of the possible breaks is tried; more than one in `share` of all must be refused.

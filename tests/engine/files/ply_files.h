@@ -2,18 +2,15 @@
 #pragma once
 
 #include "engine/files/load_scene.h"
+#include "engine/platform.h"
 #include "tests/script.h"
-
-#include <unistd.h>
 
 namespace binosplat::test {
 
-// A folder for each test case, removed afterwards.
+// Each is another, removed with its files.
 class Folder {
 public:
-    Folder() : path_(fs::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
-        fs::create_directories(path_);
-    }
+    Folder() = default;
     ~Folder() { fs::remove_all(path_); }
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
@@ -29,7 +26,7 @@ public:
     }
 
 private:
-    fs::path path_;
+    fs::path path_ = createFolder(fs::temp_directory_path(), "binosplat_scene_test_");
 };
 // For facts that use one: TEST_CASE_FIXTURE(InFolder, "...").
 struct InFolder {

@@ -4,6 +4,7 @@
 #include "engine/files/scene_folder.h"
 #include "engine/files/scene_series.h"
 #include "tests/engine/files/spz_files.h"
+#include "tests/engine/scene/scene_measures.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/files/sog_scenes.h"
 #endif
@@ -13,24 +14,11 @@
 SUITE(scene) {
 
 void checkSound(const Scene& scene, std::uint64_t splats) {
-    REQUIRE(scene.size() == splats);
-    REQUIRE(scene.rotations.size() == splats);
-    REQUIRE(scene.scales.size() == splats);
-    REQUIRE(scene.opacities.size() == splats);
-    REQUIRE(scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)));
-    bool finite = true, unit = true, positive = true, opaque = true;
-    for (std::size_t i = 0; i < splats; ++i) {
-        finite &= std::isfinite(scene.positions[i].x + scene.positions[i].y + scene.positions[i].z);
-        unit &= std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-5f;
-        positive &= scene.scales[i].x > 0.0f && scene.scales[i].y > 0.0f &&
-                    std::isfinite(scene.scales[i].x + scene.scales[i].y);
-        opaque &= scene.opacities[i] > 0.0f && scene.opacities[i] <= 1.0f;
-    }
-    for (const float value : scene.sh) { finite &= std::isfinite(value); }
-    CHECK(finite);
-    CHECK(unit);
-    CHECK(positive);
-    CHECK(opaque);
+    CHECK(scene.size() == splats);
+    CHECK(isSound(scene));
+    CHECK(std::ranges::all_of(scene.scales,
+                              [](const glm::vec2& scale) { return std::min(scale.x, scale.y) > 0.0f; }));
+    CHECK(std::ranges::all_of(scene.opacities, [](float opacity) { return opacity > 0.0f; }));
 }
 
 std::string withSplats(int splats) {

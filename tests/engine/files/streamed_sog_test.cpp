@@ -1,6 +1,7 @@
 // Streamed SOG: each splat of a level comes from its chunks; the choice of a level; progress; and what is
 // refused.
 #include "engine/files/lod_meta.h"
+#include "engine/scene/pick_splats.h"
 #include "tests/engine/files/streamed_scenes.h"
 
 #ifndef _WIN32
@@ -17,29 +18,15 @@ Scene loadLevel(const std::string& source, std::uint32_t level, LoadNotes* notes
     return loadScene(source, 0, notes, {}, {level, {}});
 }
 
-// Appends splats `first` to `first + count` of `part` to `whole`; rows of SH get the whole's width, with
-// zeros where the part has less.
-void addSplats(Scene& whole, const Scene& part, std::size_t first, std::size_t count) {
-    const auto addTo = [&](auto& values, const auto& more) {
-        values.insert(values.end(), more.begin() + static_cast<std::ptrdiff_t>(first),
-                      more.begin() + static_cast<std::ptrdiff_t>(first + count));
-    };
-    addTo(whole.positions, part.positions);
-    addTo(whole.rotations, part.rotations);
-    addTo(whole.scales, part.scales);
-    addTo(whole.thicknesses, part.thicknesses);
-    addTo(whole.opacities, part.opacities);
-    const auto width = [](const Scene& scene) {
-        return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
-    };
-    for (std::size_t splat = first; splat < first + count; ++splat) {
-        for (std::size_t i = 0; i < width(whole); ++i) {
-            whole.sh.push_back(i < width(part) ? part.sh[splat * width(part) + i] : 0.0f);
-        }
-    }
+Scene joined(const std::vector<Scene>& parts) {
+    Scene whole;
+    for (const Scene& part : parts) { appendSplats(whole, part); }
+    return whole;
 }
 
-void addWhole(Scene& whole, const Scene& part) { addSplats(whole, part, 0, part.size()); }
+Scene picked(const Scene& scene, const std::vector<std::uint32_t>& splats) {
+    return pickSplats(scene, splats);
+}
 
 TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the environment behind") {
     const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"),
@@ -48,9 +35,7 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
     REQUIRE(a.sh_degree == 1);
     REQUIRE(b.sh_degree == 0);
 
-    Scene finest;
-    finest.sh_degree = 1;
-    for (const Scene* part : {&a, &b, &env}) { addWhole(finest, *part); }
+    const Scene finest = joined({a, b, env});
     LoadNotes notes;
     checkSameScene(loadLevel(source, 0, &notes), finest);
     CHECK(these(notes.level, notes.level_splats, notes.environment_splats, notes.splats_in_file) ==
@@ -64,10 +49,7 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
 
     // One leaf has no splats at the other level; only that level's chunks need to exist.
     for (const char* chunk : {"/a", "/b"}) { std::filesystem::remove_all(source + chunk); }
-    Scene coarse;
-    coarse.sh_degree = 1;
-    for (const Scene* part : {&c, &env}) { addWhole(coarse, *part); }
-    checkSameScene(loadLevel(source, 1, &notes), coarse);
+    checkSameScene(loadLevel(source, 1, &notes), joined({c, env}));
     CHECK(notes.level == 1);
     CHECK(contains(notes.lines.back(),
                    "level of detail 1 of 0 (the finest) to 1; 1 of 3 leaves have no splats at this level"));
@@ -115,15 +97,9 @@ TEST_CASE(
     const std::string source = writeStreamed(folder, "scene", less);
     const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"),
                 env = loadScene(source + "/env");
-    Scene expected;
-    expected.sh_degree = 1;
-    addSplats(expected, a, 0, 5);
-    addWhole(expected, b);
-    addSplats(expected, c, 0, 6);
-    Scene with_environment = expected;
-    addWhole(with_environment, env);
+    const Scene expected = joined({picked(a, {0, 1, 2, 3, 4}), b, picked(c, {0, 1, 2, 3, 4, 5})});
     LoadNotes notes;
-    checkSameScene(loadLevel(source, 0, &notes), with_environment);
+    checkSameScene(loadLevel(source, 0, &notes), joined({expected, env}));
     CHECK(notes.level_splats == std::vector<std::uint64_t>{19, 8});
     CHECK(contains(notes.lines.back(),
                    "; 1 of 3 leaves have no splats at this level, 1 of them show a coarser one"));
@@ -194,12 +170,9 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
                            return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4};
                        }));
 
-    Scene expected;
-    expected.sh_degree = 1;
-    for (const std::size_t splat : {2u, 4u, 6u}) { addSplats(expected, a, splat, 1); }
-    for (const char* part : {"/b", "/env"}) { addWhole(expected, loadScene(source + part)); }
     LoadNotes notes;
-    checkSameScene(loadScene(source, 0, &notes), expected);
+    checkSameScene(loadScene(source, 0, &notes),
+                   joined({picked(a, {2, 4, 6}), loadScene(source + "/b"), loadScene(source + "/env")}));
     CHECK(these(notes.skipped_zero_rotation, notes.splats_in_file) == these(1, 20));
 }
 

@@ -31,6 +31,25 @@ inline Scene randomScene(int sh_degree, std::size_t splats, bool are_gaussians =
     return scene;
 }
 
+// Whether every array has as many values as there are splats, and none is one that cannot be drawn.
+inline bool isSound(const Scene& scene) {
+    const std::size_t splats = scene.size();
+    const auto finite = [](float value) { return std::isfinite(value); };
+    bool sound =
+        scene.rotations.size() == splats && scene.scales.size() == splats &&
+        scene.opacities.size() == splats && std::ranges::all_of(scene.sh, finite) &&
+        scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+    for (std::size_t i = 0; sound && i < splats; ++i) {
+        const glm::vec3& p = scene.positions[i];
+        const glm::vec2& scale = scene.scales[i];
+        sound = finite(p.x) && finite(p.y) && finite(p.z) && finite(scale.x) && finite(scale.y) &&
+                scale.x >= 0.0f && scale.y >= 0.0f &&
+                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f &&
+                scene.opacities[i] <= 1.0f;
+    }
+    return sound;
+}
+
 // What defines an ellipsoid or a disc, whatever the order of its axes.
 inline glm::dmat3 covarianceOf(const Scene& scene, std::size_t splat) {
     glm::dmat3 axes(glm::mat3_cast(glm::dquat(scene.rotations[splat])));

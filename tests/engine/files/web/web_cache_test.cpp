@@ -4,7 +4,7 @@
 
 SUITE(web_cache) {
 
-const std::string kPly = makePly(45).bytes(), kOther = makePly(9).bytes();
+const std::string &kPly = OnWeb::kPly, kOther = makePly(9).bytes();
 
 // As a good server does: it answers 304 to a client that already has the version.
 WebServer::Handler withVersions(std::string bytes) {
@@ -17,20 +17,24 @@ WebServer::Handler withVersions(std::string bytes) {
     };
 }
 
-fs::path noteOf(const Folder& folder) {
-    for (const std::string& name : filesIn(folder.file("cache"))) {
-        if (name.ends_with(".json")) { return folder.file("cache/" + name); }
+struct Cached : OnWeb {
+    [[nodiscard]] fs::path cache() const { return settings.cache_folder; }
+    [[nodiscard]] std::size_t filesKept() const { return filesIn(cache()).size(); }
+    [[nodiscard]] fs::path note() const {
+        for (const std::string& name : filesIn(cache())) {
+            if (name.ends_with(".json")) { return cache() / name; }
+        }
+        return {};
     }
-    return {};
-}
+};
 
 void setAge(const fs::path& file, int hours) {
     fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(hours));
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    Cached,
     "a file that has not changed is sent once, and one that has takes the place of the one that was kept") {
-    const Folder folder;
     std::atomic<int> unchanged = 0;
     const WebServer server(
         [&, old = withVersions(kPly), latest = withVersions(kOther)](const WebRequest& request) {
@@ -41,74 +45,67 @@ TEST_CASE(
             }
             return given;
         });
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (int turn = 0; turn < 3; ++turn) {
         LoadNotes notes;
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder), &notes));
+        checkSame(server.at("/a.ply"), &notes);
         CHECK(notes.stale.empty());
     }
     CHECK(server.asked().size() == 3);
     CHECK(unchanged == 2);
-    CHECK(filesIn(folder.file("cache")).size() == 2);
-    checkSameScene(loadScene(folder.write("now.ply", kOther)),
-                   loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+    CHECK(filesKept() == 2);
+    checkSameScene(loadScene(folder.write("now.ply", kOther)), loadFromWeb(server.at("/a.ply"), settings));
     CHECK(unchanged == 2);
-    CHECK(filesIn(folder.file("cache")).size() == 2);
-    CHECK(bytesIn(folder.file("cache")) < kOther.size() + 1000);
+    CHECK(filesKept() == 2);
+    CHECK(bytesIn(cache()) < kOther.size() + 1000);
 }
 
-TEST_CASE("a file of which the server says no version is fetched each time") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Cached, "a file of which the server says no version is fetched each time") {
     const WebServer server({{"/a.ply", kPly}});
-    for (int turn = 0; turn < 2; ++turn) { (void)loadFromWeb(server.at("/a.ply"), webSettings(folder)); }
+    for (int turn = 0; turn < 2; ++turn) { checkSame(server.at("/a.ply")); }
     CHECK(server.asked().size() == 2);
     // So is a file whose end the server does not announce, since it may have been cut off.
     const WebServer endless([](const WebRequest& request) {
         CHECK_FALSE(request.headers.contains("if-none-match"));
         return WebAnswer{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\n\r\n" + kPly, WebAnswer::Then::kClose};
     });
-    for (int turn = 0; turn < 2; ++turn) { (void)loadFromWeb(endless.at("/a.ply"), webSettings(folder)); }
+    for (int turn = 0; turn < 2; ++turn) { checkSame(endless.at("/a.ply")); }
 }
 
-TEST_CASE("without its server a scene is shown as it was, and one line says so") {
-    const Folder folder;
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
+TEST_CASE_FIXTURE(Cached, "without its server a scene is shown as it was, and one line says so") {
     WebServer server([handle = withVersions(kPly)](const WebRequest& request) {
         return request.number == 0   ? handle(request)
                : request.number == 1 ? answer("404 Not Found")
                                      : answer("503 Service Unavailable");
     });
     const std::string address = server.at("/a.ply");
-    (void)loadFromWeb(address, webSettings(folder));
+    checkSame(address);
     // If a server is there and no longer has the file, it is believed; the copy stays.
-    CHECK(contains(webError(address, webSettings(folder)), "is not there"));
+    CHECK(contains(webError(address, settings), "is not there"));
     LoadNotes busy, gone;
-    checkSameScene(scene, loadFromWeb(address, webSettings(folder), &busy));
+    checkSame(address, &busy);
     CHECK(contains(
         busy.stale,
         address + ": the server cannot serve it (it answers 503), after 4 attempts; taken as it was on 20"));
     server.stop();
-    checkSameScene(scene, loadFromWeb(address, webSettings(folder), &gone));
+    checkSame(address, &gone);
     CHECK(contains(gone.stale, address + ": cannot be reached ("));
     CHECK(contains(gone.stale, "; taken as it was on 20"));
     CHECK(std::ranges::count(gone.lines, gone.stale) == 1);
-    CHECK(contains(webError(address + "?other", webSettings(folder)), "cannot be reached ("));
+    CHECK(contains(webError(address + "?other", settings), "cannot be reached ("));
 }
 
-TEST_CASE("the cache keeps its limit, and what was used last") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Cached, "the cache keeps its limit, and what was used last") {
     const WebServer server({{"/a.ply", kPly}, {"/b.ply", kPly}, {"/c.ply", kPly}});
-    WebSettings settings = webSettings(folder);
-    (void)loadFromWeb(server.at("/a.ply"), settings);
-    const fs::path first = noteOf(folder);
-    (void)loadFromWeb(server.at("/b.ply"), settings);
-    CHECK(filesIn(folder.file("cache")).size() == 4);
-    for (const std::string& name : filesIn(folder.file("cache"))) { setAge(folder.file("cache/" + name), 5); }
+    checkSame(server.at("/a.ply"));
+    const fs::path first = note();
+    checkSame(server.at("/b.ply"));
+    CHECK(filesKept() == 4);
+    for (const std::string& name : filesIn(cache())) { setAge(cache() / name, 5); }
     setAge(first, 4);
     settings.cache_bytes = 2 * (kPly.size() + 500);
-    (void)loadFromWeb(server.at("/c.ply"), settings);
-    CHECK(filesIn(folder.file("cache")).size() == 4);
-    CHECK(bytesIn(folder.file("cache")) <= settings.cache_bytes);
+    checkSame(server.at("/c.ply"));
+    CHECK(filesKept() == 4);
+    CHECK(bytesIn(cache()) <= settings.cache_bytes);
     CHECK(fs::exists(first));
     // A file larger than the whole cache is not taken, whether or not the server announces its size; without
     // a cache it is shown and not kept.
@@ -120,14 +117,12 @@ TEST_CASE("the cache keeps its limit, and what was used last") {
                    fmt::format("is {} bytes long, more than the cache's {}", kPly.size(), kPly.size() / 2)));
     CHECK(contains(webError(silent.at("/a.ply"), settings), "a larger --cache-limit takes it"));
     settings.cache_bytes = 0;
-    CHECK(loadFromWeb(server.at("/a.ply"), settings).size() > 0);
-    CHECK(filesIn(folder.file("cache")).empty());
+    checkSame(server.at("/a.ply"));
+    CHECK(filesKept() == 0);
 }
 
-TEST_CASE("without a folder for a cache nothing stays") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Cached, "without a folder for a cache nothing stays") {
     const WebServer server({{"/a.ply", kPly}});
-    WebSettings settings = webSettings(folder);
     settings.cache_folder.clear();
     const auto left = [] {
         const auto names = filesIn(fs::temp_directory_path());
@@ -135,46 +130,39 @@ TEST_CASE("without a folder for a cache nothing stays") {
             names, [](const std::string& name) { return name.starts_with("binosplat-web-"); });
     };
     const auto before = left();
-    CHECK(loadFromWeb(server.at("/a.ply"), settings).size() > 0);
+    checkSame(server.at("/a.ply"));
     CHECK(left() == before);
     settings.cache_folder = folder.write("file", "no folder");
     CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/a.ply"), settings),
                          doctest::Contains("expected a place to write to"), Error);
 }
 
-TEST_CASE("a broken cache is one without the file") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Cached, "a broken cache is one without the file") {
     const WebServer server(withVersions(kPly));
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
-    const WebSettings settings = webSettings(folder);
-    (void)loadFromWeb(server.at("/a.ply"), settings);
-    const std::string note = noteOf(folder).filename().string();
-    const std::string whole = textIn(folder.file("cache/" + note));
+    checkSame(server.at("/a.ply"));
+    const std::string name = note().filename().string(), whole = textIn(note());
     for (const std::string& broken :
          {std::string(), std::string("{"), std::string("[]"), replaced(whole, "\"bytes\": ", "\"bytes\": 1"),
           replaced(whole, "/a.ply", "/b.ply"), replaced(whole, "\"changed_ns\": ", "\"changed_ns\": 1"),
           replaced(whole, "\"etag\": \"\\\"", "\"etag\": 7, \"x\": \"\\\"")}) {
         CAPTURE(broken);
-        (void)folder.write("cache/" + note, broken);
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
+        (void)folder.write("cache/" + name, broken);
+        checkSame(server.at("/a.ply"));
     }
     // What an interrupted program left is removed after a while; what another program is fetching is not.
     (void)folder.write("cache/0-1-2.part", "old");
     (void)folder.write("cache/0-1-3.part", "new");
     (void)folder.write("cache/0.json", "{}");
-    setAge(folder.file("cache/0-1-2.part"), 2);
-    (void)loadFromWeb(server.at("/a.ply"), settings);
-    CHECK_FALSE(fs::exists(folder.file("cache/0-1-2.part")));
-    CHECK_FALSE(fs::exists(folder.file("cache/0.json")));
-    CHECK(fs::exists(folder.file("cache/0-1-3.part")));
+    setAge(cache() / "0-1-2.part", 2);
+    checkSame(server.at("/a.ply"));
+    CHECK_FALSE(fs::exists(cache() / "0-1-2.part"));
+    CHECK_FALSE(fs::exists(cache() / "0.json"));
+    CHECK(fs::exists(cache() / "0-1-3.part"));
 }
 
-TEST_CASE("several at once use one cache, even one in which nothing may stay") {
-    const Folder folder;
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
+TEST_CASE_FIXTURE(Cached, "several at once use one cache, even one in which nothing may stay") {
     const WebServer server(withVersions(kPly));
     for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{0}}) {
-        WebSettings settings = webSettings(folder);
         settings.cache_bytes = limit;
         std::atomic<int> same = 0, thrown_out = 0;
         const auto load = [&] {
@@ -193,7 +181,7 @@ TEST_CASE("several at once use one cache, even one in which nothing may stay") {
         CHECK(same + thrown_out == 16);
         CHECK(same > 0);
         if (limit > 0) { CHECK(thrown_out == 0); }
-        CHECK(filesIn(folder.file("cache")).size() == (limit > 0 ? 2 : 0));
+        CHECK(filesKept() == (limit > 0 ? 2 : 0));
     }
 }
 

@@ -5,7 +5,7 @@
 
 SUITE(web_fetch) {
 
-const std::string kPly = makePly(45).bytes();
+const std::string& kPly = OnWeb::kPly;
 
 WebAnswer cutAfter(std::size_t bytes, WebAnswer::Then then = WebAnswer::Then::kClose) {
     WebAnswer whole = answer("200 OK", "", kPly);
@@ -27,20 +27,23 @@ WebAnswer withLength(const std::string& header, const std::string& body) {
     return {fmt::format("HTTP/1.1 200 OK\r\n{}\r\n{}", header, body), WebAnswer::Then::kClose};
 }
 
+void takeLittle(WebSettings& settings) { settings.fetch.most_bytes = kPly.size() - 1; }
+void takeAll(WebSettings&) {}
+
 // The error when a server gives every request this answer; afterwards the cache must be empty.
-std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder&) = webSettings,
-                    std::size_t attempts = 1) {
+std::string errorOf(const WebAnswer& given, std::size_t attempts = 1,
+                    void (*change)(WebSettings&) = takeAll) {
     const Folder folder;
     const WebServer server([given](const WebRequest&) { return given; });
-    std::string message = webError(server.at("/a.ply"), settings(folder));
+    WebSettings settings = webSettings(folder);
+    change(settings);
+    std::string message = webError(server.at("/a.ply"), settings);
     CHECK(server.asked().size() == attempts);
     CHECK(filesIn(folder.file("cache")).empty());
     return message.substr(std::min(message.size(), server.at("/a.ply: ").size()));
 }
 
-TEST_CASE("a server that is busy or cuts off is asked again") {
-    const Folder folder;
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
+TEST_CASE_FIXTURE(OnWeb, "a server that is busy or cuts off is asked again") {
     for (const WebAnswer& first :
          {answer("429 Too Many Requests", "Retry-After: 0\r\n"),
           answer("500 Internal Server Error", "", "sorry"), answer("503 Service Unavailable"), cutAfter(0),
@@ -50,15 +53,11 @@ TEST_CASE("a server that is busy or cuts off is asked again") {
         const WebServer server([&](const WebRequest& request) {
             return request.number < 2 ? first : answer("200 OK", "", kPly);
         });
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
-        CHECK(server.asked().size() == 3);
-        std::filesystem::remove_all(folder.file("cache"));
+        checkSame(server, 3);
     }
 }
 
-TEST_CASE("a file that broke off goes on where it ended, if it is still the same") {
-    const Folder folder;
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
+TEST_CASE_FIXTURE(OnWeb, "a file that broke off goes on where it ended, if it is still the same") {
     const std::size_t half = kPly.size() / 2;
     const auto rest = [&](std::size_t from, const char* etag) {
         return partOf(kPly, from, kPly.size(), std::to_string(kPly.size()), etag);
@@ -71,47 +70,44 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
         kPly.substr(half, kPly.size() - 1 - half));
     using Asked = std::vector<std::string>;
     const std::string asks = fmt::format("bytes={}- \"1\"", half);
-    struct {
-        const char* etag;  // of the first half
-        WebAnswer second;  // after it, the whole file is sent
-        Asked asked;       // what was requested then
-    } const breaks[]{
-        {"\"1\"", rest(half, "\"1\""), {" ", asks}},
+    const std::pair<WebAnswer, Asked> breaks[]{
+        // After the first half; then the whole file is sent. What was requested follows.
+        {rest(half, "\"1\""), {" ", asks}},
         // A server that sends the whole file, of this version or another.
-        {"\"1\"", whole("ETag: \"1\"\r\n"), {" ", asks}},
-        {"\"1\"", whole("ETag: \"2\"\r\n"), {" ", asks}},
+        {whole("ETag: \"1\"\r\n"), {" ", asks}},
+        {whole("ETag: \"2\"\r\n"), {" ", asks}},
         // If what is sent is not the rest, or belongs to another version, the whole file is requested.
-        {"\"1\"", rest(half, "\"2\""), {" ", asks, " "}},
-        {"\"1\"", rest(half + 1, "\"1\""), {" ", asks, " "}},
-        {"\"1\"", rest(0, "\"1\""), {" ", asks, " "}},
-        {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)), {" ", asks, " "}},
-        {"\"1\"",
-         answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"),
-         {" ", asks, " "}},
-        {"\"1\"", answer("416 Range Not Satisfiable"), {" ", asks, " "}},
+        {rest(half, "\"2\""), {" ", asks, " "}},
+        {rest(half + 1, "\"1\""), {" ", asks, " "}},
+        {rest(0, "\"1\""), {" ", asks, " "}},
+        {answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)), {" ", asks, " "}},
+        {answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"), {" ", asks, " "}},
+        {answer("416 Range Not Satisfiable"), {" ", asks, " "}},
         // A rest that is too short is one more break; a busy server's answer is never continued.
-        {"\"1\"", shorter, {" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)}},
-        {"\"1\"", answer("503 Service Unavailable", "", "busy"), {" ", asks, asks}},
-        {"\"1\"", {"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}, {" ", asks, asks}},
+        {shorter, {" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)}},
+        {answer("503 Service Unavailable", "", "busy"), {" ", asks, asks}},
+        {{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}, {" ", asks, asks}},
         // Parts are put together only with a version that guarantees every byte to be the same.
-        {"W/\"1\"", whole(""), {" ", " "}}};
+        {whole(""), {" ", " "}}};
     for (const auto& one : breaks) {
-        CAPTURE(one.second.bytes.substr(0, 120));
+        const WebAnswer& second = one.first;
+        const Asked& expected = one.second;
+        CAPTURE(second.bytes.substr(0, 120));
         Asked asked;
         WebAnswer first = cutAfter(half);
-        first.bytes.insert(first.bytes.find("\r\n") + 2, fmt::format("ETag: {}\r\n", one.etag));
+        const std::string etag = expected.at(1) == " " ? "W/\"1\"" : "\"1\"";
+        first.bytes.insert(first.bytes.find("\r\n") + 2, fmt::format("ETag: {}\r\n", etag));
         const WebServer server([&](const WebRequest& request) {
             asked.push_back(request.header("range") + " " + request.header("if-range"));
-            return request.number == 0 ? first : request.number == 1 ? one.second : whole("ETag: \"3\"\r\n");
+            return request.number == 0 ? first : request.number == 1 ? second : whole("ETag: \"3\"\r\n");
         });
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
-        CHECK(asked == one.asked);
+        checkSame(server, expected.size());
+        CHECK(asked == expected);
         CHECK(filesIn(folder.file("cache")).size() == 2);
-        std::filesystem::remove_all(folder.file("cache"));
     }
 }
 
-TEST_CASE("a file of unknown length goes on only to the length that the rest tells") {
+TEST_CASE_FIXTURE(OnWeb, "a file of unknown length goes on only to the length that the rest tells") {
     const std::string chunk = fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300)),
                       total = std::to_string(kPly.size());
     const WebAnswer cut{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk,
@@ -119,19 +115,16 @@ TEST_CASE("a file of unknown length goes on only to the length that the rest tel
     for (const auto& [second, requests] : {std::pair(partOf(kPly, 300, kPly.size(), total), 2u),
                                            {partOf(kPly, 300, 500, total), 3u},
                                            {partOf(kPly, 300, 500, "*"), 3u}}) {
-        const Folder folder;
-        const Scene scene = loadScene(folder.write("a.ply", kPly));
         const WebServer server([&, &rest = second](const WebRequest& request) {
             if (request.number < 2) { return request.number == 0 ? cut : rest; }
             return request.headers.contains("range") ? partOf(kPly, 500, kPly.size(), total)
                                                      : answer("200 OK", "ETag: \"1\"\r\n", kPly);
         });
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
-        CHECK(server.asked().size() == requests);
+        checkSame(server, requests);
     }
 }
 
-TEST_CASE("a large file may break off more often than attempts are made") {
+TEST_CASE_FIXTURE(OnWeb, "a large file may break off more often than attempts are made") {
     constexpr std::size_t kPiece = 1 << 20;
     std::string large(7 * kPiece / 2, ' ');
     std::mt19937 random(1);
@@ -146,8 +139,6 @@ TEST_CASE("a large file may break off more often than attempts are made") {
                 large.size(), large.substr(from, kPiece)),
             WebAnswer::Then::kClose};
     });
-    const Folder folder;
-    WebSettings settings = webSettings(folder);
     settings.fetch.attempts = 2;
     const std::vector<std::byte> got = WebFiles(server.at("/a"), settings).open("")->readWhole(large.size());
     CHECK(std::ranges::equal(got, std::as_bytes(std::span(large))));
@@ -155,18 +146,18 @@ TEST_CASE("a large file may break off more often than attempts are made") {
 }
 
 TEST_CASE("a few attempts are enough") {
-    CHECK(errorOf(answer("503 Service Unavailable"), webSettings, 4) ==
+    CHECK(errorOf(answer("503 Service Unavailable"), 4) ==
           "the server cannot serve it (it answers 503), after 4 attempts; try again later");
-    CHECK(errorOf(cutAfter(100), webSettings, 4) ==
+    CHECK(errorOf(cutAfter(100), 4) ==
           fmt::format("was cut off after 100 of {} bytes, after 4 attempts; try again later", kPly.size()));
-    CHECK(
-        errorOf(WebAnswer{"", WebAnswer::Then::kClose}, webSettings, 4).starts_with("the server hangs up ("));
+    CHECK(errorOf(WebAnswer{"", WebAnswer::Then::kClose}, 4).starts_with("the server hangs up ("));
     // If a server asks to wait an hour, there is no second request.
     CHECK(errorOf(answer("429 Too Many Requests", "Retry-After: 3600\r\n")) ==
           "the server asks to wait 3600 s; try again then");
 }
 
-TEST_CASE("a file that is not there, not for everybody, empty or no scene is refused at once") {
+TEST_CASE_FIXTURE(OnWeb,
+                  "a file that is not there, not for everybody, empty or no scene is refused at once") {
     CHECK(errorOf(answer("404 Not Found", "", "<html>")) ==
           "is not there (the server answers 404), expected the address of a scene file");
     CHECK(errorOf(answer("403 Forbidden")) ==
@@ -176,80 +167,64 @@ TEST_CASE("a file that is not there, not for everybody, empty or no scene is ref
     // Whatever comes with the answer, and however much of it.
     CHECK(errorOf(answer("404 Not Found", "", std::string(1 << 20, 'x'))).starts_with("is not there"));
     CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be fetched ("));
-    const Folder folder;
     const WebServer server({{"/empty", ""}, {"/page", "<!DOCTYPE html><html><body>A scene!</body></html>"}});
-    CHECK(contains(webError(server.at("/empty"), webSettings(folder)), "is empty, expected a scene file"));
-    CHECK(
-        contains(webError(server.at("/page"), webSettings(folder)), "a web page (HTML), not a splat scene"));
+    CHECK(contains(webError(server.at("/empty"), settings), "is empty, expected a scene file"));
+    CHECK(contains(webError(server.at("/page"), settings), "a web page (HTML), not a splat scene"));
 }
 
-TEST_CASE("what a server says of a file's length is not believed") {
+TEST_CASE_FIXTURE(OnWeb, "what a server says of a file's length is not believed") {
     // Longer than the file: cut off.
-    CHECK(errorOf(withLength(fmt::format("Content-Length: {}\r\n", kPly.size() + 1), kPly), webSettings, 4)
+    CHECK(errorOf(withLength(fmt::format("Content-Length: {}\r\n", kPly.size() + 1), kPly), 4)
               .starts_with(fmt::format("was cut off after {} of {} bytes", kPly.size(), kPly.size() + 1)));
     // Longer than any disk: not even started.
     CHECK(errorOf(withLength("Content-Length: 9000000000000000000\r\n", kPly))
               .starts_with("is 9000000000000000000 bytes long, expected at most"));
     // More than is allowed.
-    const auto little = [](const Folder& folder) {
-        WebSettings settings = webSettings(folder);
-        settings.fetch.most_bytes = kPly.size() - 1;
-        return settings;
-    };
     const std::string chunked = "Transfer-Encoding: chunked\r\n",
                       chunk = fmt::format("{:x}\r\n{}\r\n0\r\n\r\n", kPly.size(), kPly);
     const std::string most = fmt::format("{} bytes, which is the most that is taken", kPly.size() - 1);
-    CHECK(errorOf(withLength("", kPly), little) == "is longer than " + most);
-    CHECK(errorOf(withLength(chunked, chunk), little) == "is longer than " + most);
+    CHECK(errorOf(withLength("", kPly), 1, takeLittle) == "is longer than " + most);
+    CHECK(errorOf(withLength(chunked, chunk), 1, takeLittle) == "is longer than " + most);
     // Chunks that break off do not end the file.
-    CHECK(errorOf(withLength(chunked, chunk.substr(0, chunk.find('\n') + 1 + 300)), webSettings, 4)
+    CHECK(errorOf(withLength(chunked, chunk.substr(0, chunk.find('\n') + 1 + 300)), 4)
               .starts_with("was cut off after 300 bytes"));
 
     // Shorter: the scene ends early, whatever the cause.
-    const Folder folder;
     const WebServer server([](const WebRequest&) {
         return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly);
     });
-    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "a.ply: "));
+    CHECK(contains(webError(server.at("/a.ply"), settings), "a.ply: "));
 
     // With unknown length, the scene loads all the same.
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (const WebAnswer& given :
          {withLength("", kPly), withLength("Content-Length: 99999999999999999999999\r\n", kPly),
           withLength(chunked, chunk)}) {
         const WebServer other([given](const WebRequest&) { return given; });
-        checkSameScene(scene, loadFromWeb(other.at("/a.ply"), webSettings(folder)));
+        checkSame(other, 1);
     }
 }
 
-TEST_CASE("redirects are followed on the web, and never to a file") {
+TEST_CASE_FIXTURE(OnWeb, "redirects are followed on the web, and never to a file") {
     const auto leadTo = [](const std::string& place) {
         return answer("302 Found", "Location: " + place + "\r\n");
     };
-    {
-        const Folder folder;
-        const Scene scene = loadScene(folder.write("a.ply", kPly));
-        const WebServer end({{"/in/a.ply", kPly}});
-        const WebServer server([&](const WebRequest& request) {
-            return leadTo(request.path == "/1" ? "/2" : end.at("/in/a.ply"));
-        });
-        checkSameScene(scene, loadFromWeb(server.at("/1"), webSettings(folder)));
-        CHECK(server.asked() == std::vector<std::string>{"/1", "/2"});
-    }
-    for (const std::string& place :
-         {std::string("file://" BINOSPLAT_SOURCE_DIR "/README.md"), std::string("file:///etc/passwd"),
-          std::string("ftp://127.0.0.1/a"), std::string("gopher://127.0.0.1/")}) {
-        CAPTURE(place);
+    const WebServer end({{"/in/a.ply", kPly}});
+    const WebServer server(
+        [&](const WebRequest& request) { return leadTo(request.path == "/1" ? "/2" : end.at("/in/a.ply")); });
+    checkSame(server.at("/1"));
+    CHECK(server.asked() == std::vector<std::string>{"/1", "/2"});
+    for (const char* place : {"file://" BINOSPLAT_SOURCE_DIR "/README.md", "file:///etc/passwd",
+                              "ftp://127.0.0.1/a", "gopher://127.0.0.1/"}) {
+        CAPTURE(std::string(place));
         CHECK(errorOf(leadTo(place)) ==
               "redirects to an address that may not be followed, expected one of http or https, and of https "
               "after https");
     }
-    CHECK(errorOf(leadTo("/a.ply"), webSettings, 6) == "redirects more than 5 times, expected a file");
+    CHECK(errorOf(leadTo("/a.ply"), 6) == "redirects more than 5 times, expected a file");
     CHECK_FALSE(contains(errorOf(leadTo("http://me:secret@127.0.0.1/a.ply")), "secret"));
 }
 
-TEST_CASE("no redirect leads from the public web to a machine of this network") {
-    const Folder folder;
+TEST_CASE_FIXTURE(OnWeb, "no redirect leads from the public web to a machine of this network") {
     const WebServer server([&](const WebRequest& request) {
         return request.path == "/1" ? answer("302 Found", "Location: /a.ply\r\n")
                                     : answer("200 OK", "", kPly);
@@ -258,7 +233,6 @@ TEST_CASE("no redirect leads from the public web to a machine of this network") 
         bool first_is_private, second_is_private, is_followed;
     } const ways[]{{false, false, true}, {true, false, true}, {true, true, true}, {false, true, false}};
     for (const auto& way : ways) {
-        WebSettings settings = webSettings(folder);
         settings.fetch.is_private = [&way, servers = 0](const std::string& ip) mutable {
             CHECK(ip == "127.0.0.1");
             return servers++ == 0 ? way.first_is_private : way.second_is_private;
@@ -274,14 +248,13 @@ TEST_CASE("no redirect leads from the public web to a machine of this network") 
     CHECK(server.asked() == std::vector<std::string>{"/1", "/a.ply", "/1", "/a.ply", "/1", "/a.ply", "/1"});
 }
 
-TEST_CASE("a scene that began on the public web stays there: in further attempts, and in further files") {
-    const Folder folder;
+TEST_CASE_FIXTURE(
+    OnWeb, "a scene that began on the public web stays there: in further attempts, and in further files") {
     const WebServer server([&](const WebRequest& request) {
         if (request.number == 0) { return answer("503 Service Unavailable"); }
         return answer("200 OK", "", makeGltf().json(R"(,"uri":"a.bin")"));
     });
     for (const auto& [address, requests] : {std::pair("/a.ply", 1u), std::pair("/a.gltf", 2u)}) {
-        WebSettings settings = webSettings(folder);
         settings.fetch.is_private = [servers = 0](const std::string&) mutable { return servers++ > 0; };
         CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at(address), settings),
                              doctest::Contains("leads from the public web to 127.0.0.1"), Error);
@@ -289,17 +262,16 @@ TEST_CASE("a scene that began on the public web stays there: in further attempts
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    OnWeb,
     "through a proxy, servers are judged by the addresses that name them in numbers, and not by the "
     "proxy's") {
-    const Folder folder;
     std::string target;
     const WebServer proxy([&](const WebRequest& request) {
         return request.path.ends_with("/1") ? answer("302 Found", "Location: " + target + "\r\n")
                                             : answer("200 OK", "", kPly);
     });
     const auto fetch = [&](const std::string& first, const std::string& second) {
-        const WebSettings settings = webSettings(folder);
         std::filesystem::remove_all(settings.cache_folder);
         target = second;
         setEnvironment("http_proxy", proxy.at(""));
@@ -320,9 +292,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
-    const Folder folder;
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
+TEST_CASE_FIXTURE(OnWeb, "a body that is packed on its way is unpacked, and never resumed") {
     for (const auto& [encoding, window_bits] : {std::pair("gzip", MAX_WBITS + 16),
                                                 {"x-gzip", MAX_WBITS + 16},
                                                 {"deflate", MAX_WBITS},
@@ -339,23 +309,21 @@ TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
             return given;
         });
         LoadNotes notes;
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder), &notes));
-        CHECK(server.asked().size() == 2);
+        checkSame(server, 2, &notes);
         // It comes from this machine.
         CHECK(std::ranges::none_of(
             notes.lines, [](const std::string& line) { return contains(line, "came by http, so others"); }));
-        std::filesystem::remove_all(folder.file("cache"));
     }
     std::string broken = deflated(kPly, MAX_WBITS + 16);
     broken[broken.size() - 6] ^= 1;  // of the checksum, at the end of the whole file
     CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be fetched ("));
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    OnWeb,
     "a body that is not packed as the server says, or in no way that is known, is taken as it comes, and "
     "resumed") {
-    const Folder folder;
-    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    settings.fetch.attempts = 2;
     for (const char* encoding : {"aws-chunked", "UTF-8", "gzip", "gzip, unknown"}) {
         CAPTURE(encoding);
         const std::string header = fmt::format("Content-Encoding: {}\r\n", encoding);
@@ -374,56 +342,42 @@ TEST_CASE(
             }
             return given;
         });
-        WebSettings settings = webSettings(folder);
-        settings.fetch.attempts = 2;
-        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
-        CHECK(server.asked().size() == 3);
-        std::filesystem::remove_all(folder.file("cache"));
+        checkSame(server, 3);
     }
-    CHECK(errorOf(answer("404 Not Found", "Content-Encoding: unknown\r\n", "no such page"), webSettings, 2)
+    CHECK(errorOf(answer("404 Not Found", "Content-Encoding: unknown\r\n", "no such page"), 2)
               .starts_with("is not there"));
-    const auto little = [](const Folder& place) {
-        WebSettings settings = webSettings(place);
-        settings.fetch.most_bytes = kPly.size() - 1;
-        return settings;
-    };
-    CHECK(errorOf(answer("200 OK", "Content-Encoding: unknown\r\n", kPly), little, 2) ==
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: unknown\r\n", kPly), 2, takeLittle) ==
           fmt::format("is {} bytes long, expected at most {}", kPly.size(), kPly.size() - 1));
 }
 
 TEST_CASE("a server that falls silent is given up") {
-    const auto impatient = [](const Folder& folder) {
-        WebSettings settings = webSettings(folder);
+    const auto impatient = [](WebSettings& settings) {
         settings.fetch.patience = std::chrono::milliseconds(100);
         settings.fetch.attempts = 2;
-        return settings;
     };
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{200}}) {
-        CHECK(errorOf(cutAfter(bytes, WebAnswer::Then::kHang), impatient, 2) ==
+        CHECK(errorOf(cutAfter(bytes, WebAnswer::Then::kHang), 2, impatient) ==
               fmt::format("the server has fallen silent after {} bytes, after 2 attempts; try again later",
                           bytes));
     }
-    CHECK(errorOf({"", WebAnswer::Then::kHang}, impatient, 2)
+    CHECK(errorOf({"", WebAnswer::Then::kHang}, 2, impatient)
               .starts_with("the server has fallen silent after 0 bytes"));
 }
 
-TEST_CASE("a server that vanishes in the middle of a file, or was never there, is named") {
-    const Folder folder;
+TEST_CASE_FIXTURE(OnWeb, "a server that vanishes in the middle of a file, or was never there, is named") {
     std::function<void()> vanish;
     WebServer server([&](const WebRequest&) {
         vanish();
         return cutAfter(100);
     });
     vanish = [&] { server.refuse(); };
-    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "cannot be reached ("));
-    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)),
-                   "look at the network and at the address"));
+    CHECK(contains(webError(server.at("/a.ply"), settings), "cannot be reached ("));
+    CHECK(contains(webError(server.at("/a.ply"), settings), "look at the network and at the address"));
     CHECK(server.asked().size() == 1);
     CHECK(filesIn(folder.file("cache")).empty());
 }
 
-TEST_CASE("who waits for a file may give up at any time") {
-    const Folder folder;
+TEST_CASE_FIXTURE(OnWeb, "who waits for a file may give up at any time") {
     const WebServer server([](const WebRequest&) { return cutAfter(100, WebAnswer::Then::kHang); });
     struct Enough {};
     int told = 0;
@@ -431,7 +385,7 @@ TEST_CASE("who waits for a file may give up at any time") {
         CHECK(share == within(0.0, 0.7));
         if (++told == 3) { throw Enough(); }
     };
-    CHECK_THROWS_AS((void)loadFromWeb(server.at("/a.ply"), webSettings(folder), nullptr, {}, giveUp), Enough);
+    CHECK_THROWS_AS((void)loadFromWeb(server.at("/a.ply"), settings, nullptr, {}, giveUp), Enough);
     CHECK(filesIn(folder.file("cache")).empty());
 }
 

@@ -36,6 +36,23 @@ inline std::string webError(const std::string& address, const WebSettings& setti
     return {};
 }
 
+// A scene that is on the disk and at addresses. For facts: TEST_CASE_FIXTURE(OnWeb, "...").
+struct OnWeb : InFolder {
+    static inline const std::string kPly = makePly(45).bytes();
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    WebSettings settings = webSettings(folder);
+
+    void checkSame(const std::string& address, LoadNotes* notes = nullptr) const {
+        checkSameScene(scene, loadFromWeb(address, settings, notes));
+    }
+    // From an empty cache, after so many requests.
+    void checkSame(const WebServer& server, std::size_t requests, LoadNotes* notes = nullptr) const {
+        std::filesystem::remove_all(settings.cache_folder);
+        checkSame(server.at("/a.ply"), notes);
+        CHECK(server.asked().size() == requests);
+    }
+};
+
 inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code error;

@@ -11,6 +11,17 @@
 
 SUITE(web_scene) {
 
+struct Served : InFolder {
+    const WebSettings settings = webSettings(folder);
+
+    void checkSame(const Scene& local, const std::string& address) const {
+        const Scene far = loadFromWeb(address, settings);
+        checkSameScene(local, far);
+        CHECK(far.name == address);
+        CHECK(local.size() > 0);
+    }
+};
+
 std::vector<std::string> sorted(std::vector<std::string> names) {
     std::ranges::sort(names);
     return names;
@@ -88,8 +99,7 @@ TEST_CASE("machines of this network are told from those of the public web") {
     for (std::string none; others >> none;) { CHECK_MESSAGE(!parseIp(none), none); }
 }
 
-TEST_CASE("a scene at an address is the same as on the disk, whatever its format") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Served, "a scene at an address is the same as on the disk, whatever its format") {
     WebPages files{{"/a.ply", makePly(9, true).bytes()},
                    {"/packed.ply", makeCompressedPly()},
                    {"/a.splat", makeSplatFile()},
@@ -101,98 +111,82 @@ TEST_CASE("a scene at an address is the same as on the disk, whatever its format
 #endif
     const WebServer server(files);
     for (const auto& file : files) {
-        const std::string& path = file.first;
-        CAPTURE(path);
-        const Scene local = loadScene(folder.write("scene", file.second)),
-                    far = loadFromWeb(server.at(path), webSettings(folder));
-        checkSameScene(local, far);
-        CHECK(far.name == server.at(path));
-        CHECK(local.size() > 0);
+        CAPTURE(file.first);
+        checkSame(loadScene(folder.write("scene", file.second)), server.at(file.first));
     }
     CHECK(server.asked().size() == files.size());
 }
 
-TEST_CASE(
-    "what a packed scene on the web names beside it is in its archive, or, for one within gzip, beside "
-    "that") {
-    const Folder folder;
-    const std::string gltf = makeGltf().json(R"(,"uri":"a.bin")"), binary = makeGltf().binary();
+TEST_CASE_FIXTURE(Served,
+                  "what a scene on the web names beside it is fetched from beside it, also beside one within "
+                  "gzip, or is in "
+                  "its archive") {
+    const std::string gltf = makeGltf().json(R"(,"uri":"parts/a%20b.bin")"), binary = makeGltf().binary();
     const Scene local = loadScene(folder.write("a.glb", makeGltf().glb()));
-    WebPages files{{"/a.gltf.gz", gzip(gltf)}, {"/a.bin", binary}, {"/in/a.gltf.gz", gzip(gltf)}};
+    WebPages files{{"/in/a.gltf", gltf},
+                   {"/in/parts/a%20b.bin", binary},
+                   {"/in/a.gltf.gz", gzip(gltf)},
+                   {"/a.gltf.gz", gzip(gltf)}};
 #ifdef BINOSPLAT_SOG
-    files["/a.zip"] = makeZip(SogText{{"in/a.gltf", gltf}, {"in/a.bin", binary}});
-    files["/b.zip"] = makeZip(SogText{{"in/a.gltf", gltf}, {"a.bin", binary}});
+    files["/a.zip"] = makeZip(SogText{{"in/a.gltf", gltf}, {"in/parts/a b.bin", binary}});
+    files["/b.zip"] = makeZip(SogText{{"in/a.gltf", gltf}, {"a b.bin", binary}});
     SogText sog = makeSog();
     files["/in.zip"] = makeZip(SogText{{"in/a.sog", makeZip(sog)}});
     files["/sog/meta.gz"] = gzip(sog["meta.json"]);
     for (const auto& [name, bytes] : sog) { files["/sog/" + name] = bytes; }
 #endif
     const WebServer server(files);
-    checkSameScene(local, loadFromWeb(server.at("/a.gltf.gz"), webSettings(folder)));
-    CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/in/a.gltf.gz"), webSettings(folder)),
-                         doctest::Contains("/in/a.bin: is not there"), Error);
+    checkSame(local, server.at("/in/a.gltf"));
+    CHECK(server.asked() == std::vector<std::string>{"/in/a.gltf", "/in/parts/a%20b.bin"});
+    checkSameScene(local, loadFromWeb(server.at("/in/a.gltf.gz"), settings));
+    CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at("/a.gltf.gz"), settings),
+                         doctest::Contains("/parts/a%20b.bin: is not there"), Error);
 #ifdef BINOSPLAT_SOG
-    checkSameScene(local, loadFromWeb(server.at("/a.zip"), webSettings(folder)));
-    CHECK(
-        contains(webError(server.at("/b.zip"), webSettings(folder)), "b.zip: in/a.bin: not in the archive"));
+    checkSameScene(local, loadFromWeb(server.at("/a.zip"), settings));
+    CHECK(contains(webError(server.at("/b.zip"), settings), "b.zip: in/parts/a b.bin: not in the archive"));
     const Scene of_sog = loadScene(folder.write("a.sog", makeZip(sog)));
     for (const char* path : {"/in.zip", "/sog/meta.gz"}) {
-        checkSameScene(of_sog, loadFromWeb(server.at(path), webSettings(folder)));
+        checkSameScene(of_sog, loadFromWeb(server.at(path), settings));
     }
 #endif
 }
 
-TEST_CASE("the buffers of a glTF scene are fetched from beside it") {
-    const Folder folder;
-    const std::string gltf = makeGltf().json(R"(,"uri":"parts/a%20b.bin")"), binary = makeGltf().binary();
-    std::filesystem::create_directory(folder.file("parts"));
-    (void)folder.write("parts/a b.bin", binary);
-    const WebServer server({{"/in/a.gltf", gltf}, {"/in/parts/a%20b.bin", binary}});
-    checkSameScene(loadScene(folder.write("a.gltf", gltf)),
-                   loadFromWeb(server.at("/in/a.gltf"), webSettings(folder)));
-    CHECK(server.asked() == std::vector<std::string>{"/in/a.gltf", "/in/parts/a%20b.bin"});
-}
-
 #ifdef BINOSPLAT_SOG
-TEST_CASE("the pictures of a SOG scene are fetched from beside its meta.json, each once") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Served, "the pictures of a SOG scene are fetched from beside its meta.json, each once") {
     for (const int version : {1, 2}) {
         const std::string path = writeSogFolder(folder, "sog", makeSog(version));
         WebPages files = filesOf(path, "/of/");
         files["/of/meta.json?key=1"] = files["/of/meta.json"];
         files.erase("/of/meta.json");
         const WebServer server(files);
-        checkSameScene(loadScene(path), loadFromWeb(server.at("/of/meta.json?key=1"), webSettings(folder)));
+        checkSameScene(loadScene(path), loadFromWeb(server.at("/of/meta.json?key=1"), settings));
         std::vector<std::string> all;
         for (const auto& [name, bytes] : files) { all.push_back(name); }
         CHECK(sorted(server.asked()) == all);
-        CHECK(server.connectionCount() <= webSettings(folder).fetch.at_once);
+        CHECK(server.connectionCount() <= settings.fetch.at_once);
     }
 }
 
-TEST_CASE("a meta.json that names files elsewhere is refused before they are asked for") {
-    const Folder folder;
+TEST_CASE_FIXTURE(Served, "a meta.json that names files elsewhere is refused before they are asked for") {
     for (const char* name : {"../l.webp", "http://127.0.0.1/l.webp", "/etc/passwd", "a/l.webp"}) {
         CAPTURE(name);
         const WebServer server(
             {{"/meta.json", replaced(makeSog()["meta.json"], "\"l.webp\"", fmt::format("\"{}\"", name))}});
-        CHECK(contains(webError(server.at("/meta.json"), webSettings(folder)),
-                       "names a file that is not beside it"));
+        CHECK(contains(webError(server.at("/meta.json"), settings), "names a file that is not beside it"));
         CHECK(server.asked().size() == 1);
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    Served,
     "of a streamed scene the files of the level that is read are fetched, bundles or folders, and no "
     "others") {
-    const Folder folder;
     const std::string path = writeStreamed(folder, "scene", replaced(makeLodMeta(), "a/meta.json", "a.sog"));
     (void)folder.write("scene/a.sog", makeZip(makeChunk(2)));
     for (const std::uint32_t level : {0u, 1u}) {
         const WebServer server(filesOf(path, "/s/"));
         LoadNotes local, far;
-        const Scene scene =
-            loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), &far, {level, {}});
+        const Scene scene = loadFromWeb(server.at("/s/lod-meta.json"), settings, &far, {level, {}});
         checkSameScene(loadScene(path, 0, &local, {}, {level, {}}), scene);
         CHECK(local.level_splats == far.level_splats);
         std::vector<std::string> asked = sorted(server.asked());
@@ -209,14 +203,13 @@ TEST_CASE(
     // Nothing of a level that cannot fit is fetched.
     const WebServer server(filesOf(path, "/s/"));
     const auto fits = [](std::uint64_t splats, int) { return splats < 16; };
-    CHECK(loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), nullptr, {std::nullopt, fits})
-              .size() == 16);
+    CHECK(loadFromWeb(server.at("/s/lod-meta.json"), settings, nullptr, {std::nullopt, fits}).size() == 16);
     for (const std::string& name : server.asked()) { CHECK_FALSE(name.starts_with("/s/a")); }
     // Without its environment, the scene is shown all the same.
     std::filesystem::remove_all(folder.file("scene/env"));
     const WebServer without(filesOf(path, "/s/"));
     LoadNotes notes;
-    CHECK(loadFromWeb(without.at("/s/lod-meta.json"), webSettings(folder), &notes, {1, {}}).size() == 8);
+    CHECK(loadFromWeb(without.at("/s/lod-meta.json"), settings, &notes, {1, {}}).size() == 8);
     const std::string said = "is shown without its environment: " + without.at("/s/env/meta.json");
     CHECK(std::ranges::any_of(notes.lines, [&](const std::string& line) { return contains(line, said); }));
 }

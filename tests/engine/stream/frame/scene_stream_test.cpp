@@ -180,10 +180,11 @@ TEST_CASE_FIXTURE(
         {"404", answer("404 Not Found")},
         {".sog", answer("200 OK", "", chunk.substr(0, chunk.size() / 2))},
         {"500", answer("500 Internal Server Error")}};
-    for (const auto& [line, given] : faults) {
-        CAPTURE(std::string(line));
-        const WebServer faulty([&, &wrong = given](const WebRequest& request) {
-            return request.path == "/0_1.sog" ? wrong : answerFrom(files, request);
+    for (const auto& fault : faults) {
+        const std::string line = fault.first;
+        CAPTURE(line);
+        const WebServer faulty([&](const WebRequest& request) {
+            return request.path == "/0_1.sog" ? fault.second : answerFrom(files, request);
         });
         WebSettings web = webSettings(folder);
         web.cache_folder = folder.file(fmt::format("cache {}", line));
