@@ -6,12 +6,12 @@
 #include "engine/files/lod_meta.h"
 #include "engine/files/scene_targets.h"
 #include "engine/files/sog_meta.h"
-#include "engine/platform.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
 #include "engine/setup/settings.h"
 #include "tests/engine/files/packed_bytes.h"
+#include "tests/engine/scene/scene_measures.h"
 #ifdef BINOSPLAT_OPENXR
 #include "xr/simulated/script/script_files.h"
 #endif
@@ -58,32 +58,11 @@ void readSpz(Bytes input) { readScene(test::deflated("NGSP" + textOf(input), MAX
 // Without gzip: versions 2 and 3, and the container of version 4.
 void readBareSpz(Bytes input) { readScene("NGSP" + textOf(input)); }
 
-// A folder that is removed with its files.
-class WrittenFiles {
-public:
-    WrittenFiles() : path_(createFolder(std::filesystem::temp_directory_path(), "binosplat_fuzz")) {}
-    ~WrittenFiles() { std::filesystem::remove_all(path_); }
-    WrittenFiles(const WrittenFiles&) = delete;
-    WrittenFiles& operator=(const WrittenFiles&) = delete;
-    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-private:
-    std::filesystem::path path_;
-};
-
-bool isFinite(const Scene& scene) {
-    const auto finite = [](float value) { return std::isfinite(value); };
-    return std::all_of(scene.sh.begin(), scene.sh.end(), finite) &&
-           std::all_of(scene.opacities.begin(), scene.opacities.end(), finite) &&
-           std::all_of(scene.positions.begin(), scene.positions.end(),
-                       [&](const glm::vec3& p) { return finite(p.x) && finite(p.y) && finite(p.z); });
-}
-
 // What was read can be written in every format, and read again with as many splats.
 void convert(Bytes input) {
     const Scene scene = loadScene(MemoryFile(input).path());
     (void)surveyScene(scene);
-    const WrittenFiles files;
+    const test::Folder files;
     for (const char* name : {"a.ply", "a.spz", "a.sog"}) {
         const SceneTarget& target = findSceneTarget(name);
         try {
@@ -94,7 +73,7 @@ void convert(Bytes input) {
         }
         if (target.describeLoss(scene).empty()) { std::abort(); }
         const Scene back = loadScene(files.file(name));
-        if (back.size() != scene.size() || !isFinite(back)) {
+        if (back.size() != scene.size() || !test::isSound(back)) {
             std::fprintf(stderr, "%s: %zu splats of %zu\n", name, back.size(), scene.size());
             std::abort();
         }

@@ -1,35 +1,26 @@
 // The same scene as SOG and as PLY: what each format preserves of it.
+#include "app/scores/metrics.h"
 #include "app/summary/survey.h"
 #include "engine/files/scene_targets.h"
 #include "engine/files/sog.h"
 #include "engine/files/sog_files.h"
 #include "engine/picture/webp.h"
-#include "engine/twin/reference.h"
+#include "tests/engine/frame/gpu_scenes.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/shared_data.h"
 
 namespace binosplat::test::equivalent_format_suite {
 
 Scene loadFlat(const std::filesystem::path& path) {
-    LoadNotes notes;
-    Scene scene = loadScene(path.string(), 0, &notes);
+    auto [notes, scene] = readScene(path.string());
     flatten(scene, notes);
     return scene;
 }
 
-// Computed from the float64 twin's pictures, with a peak of 1.
+// Of the float64 twin's pictures.
 double psnrDb(const Scene& a, const Scene& b, const glm::dvec3& place, const glm::dvec3& look) {
-    Eye eye;
-    eye.size_px = {320, 320};
-    eye.intrinsics = intrinsicsFromFovX(glm::radians(60.0), eye.size_px);
-    eye.world_from_camera = lookAt(place, look, {0, -1, 0});
-    const reference::Picture first = reference::render(a, eye, {}), second = reference::render(b, eye, {});
-    double squares = 0.0;
-    for (std::size_t i = 0; i < first.rgba.size(); ++i) {
-        const glm::dvec3 difference(first.rgba[i] - second.rgba[i]);
-        squares += glm::dot(difference, difference);
-    }
-    return -10.0 * std::log10(squares / (3.0 * static_cast<double>(first.rgba.size())));
+    const Eye eye = eyeOf({place, look, {0, -1, 0}, 60.0}, {320, 320});
+    return compare(toImage(reference::render(a, eye, {})), toImage(reference::render(b, eye, {}))).psnrDb();
 }
 
 TEST_CASE("playbot and angel are the same scenes as SOG and as PLY" * needsSharedData()) {
@@ -90,8 +81,7 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
             INFO("source ", source, ", name ", name);
             const Folder folder;
             findSceneTarget(name).write(scene, folder.file(name), {});
-            LoadNotes notes;
-            Scene back = loadScene(folder.file(name), 0, &notes);
+            auto [notes, back] = readScene(folder.file(name));
             if (name == std::string("a.spz") && !scene.isGaussian3d()) { flatten(back, notes); }
             REQUIRE(back.size() == scene.size());
             CHECK(back.isGaussian3d() == scene.isGaussian3d());
@@ -106,10 +96,9 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
 TEST_CASE(
     "scenes of every format that is read go through every format that is written, as the same pictures" *
     needsSharedData()) {
-    std::vector<std::string> sources{"formats/minimal.ksplat", "formats/minimal.splat",
-                                     "playbot/playbot_streamed"};
-    sources.emplace_back("formats/khr_extensible_fallback.gltf");
-    checkFormats(sources, {{0.8, -0.5, 0.5}});
+    checkFormats({"formats/minimal.ksplat", "formats/minimal.splat", "playbot/playbot_streamed",
+                  "formats/khr_extensible_fallback.gltf"},
+                 {{0.8, -0.5, 0.5}});
 }
 
 TEST_CASE("larger scenes go through every format that is written, as the same pictures from three sides" *

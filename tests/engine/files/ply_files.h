@@ -194,18 +194,6 @@ inline void runFaults(const std::string& good,
     }});
 }
 
-// Replaces `from` by `to` in a good file; the error from reading it must contain `message`.
-struct Fault {
-    std::string from, to, message;
-};
-inline void checkFaults(const std::vector<Fault>& faults,
-                        const std::function<std::string(const Fault&)>& error_with) {
-    for (const Fault& fault : faults) {
-        const std::string message = error_with(fault);
-        CHECK_MESSAGE(contains(message, fault.message), fault.from, " -> ", fault.to, ": ", message);
-    }
-}
-
 inline PlyText makeIn(Encoding encoding, int rest_count = 0, bool three_scales = false) {
     PlyText ply = makePly(rest_count, three_scales);
     ply.encoding = encoding;

@@ -159,7 +159,7 @@ TEST_CASE_FIXTURE(
     SogText files = makeSog();
     const std::vector<std::uint8_t> bytes(191 * 8, 255);
     const std::string whole = files.at("u.webp");
-    const std::vector<Fault> faults{
+    const std::tuple<std::string, std::string, std::string> faults[]{
         {"q.webp", makeWebp(4, 4, std::vector<std::uint8_t>(64, 255)), "is 4 x 4, expected 3 x 3 as l.webp"},
         {"q.webp", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
          "is a Git LFS pointer"},
@@ -169,13 +169,13 @@ TEST_CASE_FIXTURE(
         {"u.webp", "not a picture at all, but long enough", "not a WebP file"},
         {"u.webp", whole.substr(0, whole.size() - 2), "bytes of its picture"},
         {"meta.json", files.at("meta.json") + std::string(5'000'000, ' '), "meta.json: is 50"}};
-    checkFaults(faults, [&](const Fault& fault) {
+    for (const auto& [name, content, message] : faults) {
         SogText broken = files;
-        broken[fault.from] = fault.to;
-        const std::string message = loadError(writeSogFolder(folder, "scene", broken));
-        CHECK(contains(message, "scene/" + fault.from));
-        return message;
-    });
+        broken[name] = content;
+        const std::string error = loadError(writeSogFolder(folder, "scene", broken));
+        CHECK(contains(error, "scene/" + name));
+        CHECK_MESSAGE(contains(error, message), error);
+    }
     // An entry of 20 MB of blanks, packed into a few KB.
     SogText blank = files;
     blank["q.webp"] = std::string(20'000'000, ' ');
@@ -190,9 +190,8 @@ TEST_CASE_FIXTURE(
     CHECK(contains(loadError(writeSogFolder(folder, "scene", files)), "expected fewer than 256 per byte"));
 }
 
-TEST_CASE_FIXTURE(
-    InFolder,
-    "a bundle's files may come in any order, and among others; archives that are not whole are refused") {
+TEST_CASE_FIXTURE(InFolder,
+                  "a bundle's files may come in any order, and among others, as long as all are there") {
     const SogText files = makeSog();
     std::vector<std::pair<std::string, std::string>> entries(files.begin(), files.end());
     const Scene scene = loadScene(writeSogFolder(folder, "scene", files));
@@ -216,19 +215,6 @@ TEST_CASE_FIXTURE(
         less.erase(missing);
         CHECK(contains(loadError(folder.write("a.sog", makeZip(less))), message));
     }
-    std::string changed = makeZip(files);
-    changed[changed.find("RIFF") + 40] ^= 1;  // the checksum no longer matches
-    CHECK(contains(loadError(folder.write("a.sog", changed)), "cannot be read"));
-    CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))),
-                   "not a whole zip archive"));
-    std::string locked = makeZip(files);
-    for (const auto& [header, flags] : {std::pair("PK\x03\x04", 6u), std::pair("PK\x01\x02", 8u)}) {
-        for (std::size_t at = 0; (at = locked.find(header, at)) != std::string::npos; ++at) {
-            locked[at + flags] = 1;
-        }
-    }
-    CHECK(contains(loadError(folder.write("a.sog", locked)),
-                   "a.sog: meta.json: is encrypted and asks for a password"));
 }
 
 }  // SUITE(sog_format)

@@ -30,26 +30,14 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
     std::normal_distribution<float> bell(0.0f, 1.0f);
     std::vector<float> numbers(100'000);
     for (float& number : numbers) { number = bell(random); }
-    const auto squares = [&](const auto& rounded) {
-        double sum = 0.0;
-        for (const float number : numbers) {
-            sum += std::pow(static_cast<double>(number - rounded(number)), 2);
-        }
-        return sum / static_cast<double>(numbers.size());
-    };
     const Codebook book(numbers);
-    const double error = squares([&](float number) { return book.values()[book.nearest(number)]; });
-    // By Panter and Dite: sqrt(3) pi / 2 / 256^2 for a normal distribution with variance 1.
-    CHECK(error < 1.1 * 2.7207 / 65536.0);
-    const double even =
-        squares([](float number) { return std::round((number + 5.0f) * 25.5f) / 25.5f - 5.0f; });
-    CHECK(error < even / 2.0);
-    for (std::size_t i = 0; i < 1000; ++i) {
-        const float kept = book.values()[book.nearest(numbers[i])];
-        CHECK(std::ranges::none_of(book.values(), [&](float value) {
-            return std::abs(value - numbers[i]) < std::abs(kept - numbers[i]) - 1e-7f;
-        }));
+    double error = 0.0;
+    for (const float number : numbers) {
+        error += std::pow(double{number - book.values()[book.nearest(number)]}, 2) / 100'000.0;
     }
+    // By Panter and Dite: sqrt(3) pi / 2 / 256^2 for a normal distribution with variance 1. Even steps have
+    // three times this, and a neighbour of the nearest has more.
+    CHECK(error < 1.1 * 2.7207 / 65536.0);
 
     // An outlier does not take entries of the codebook away from the other numbers.
     for (std::size_t i = 0; i < 50'000; ++i) { numbers[i] = static_cast<float>(i) / 50'000.0f; }
@@ -186,10 +174,10 @@ TEST_CASE_FIXTURE(InFolder, "scenes of no splat, one, on one plane and far away 
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    InFolder,
     "whoever waits for a large scene hears how far it is and may stop it; nothing half-written is left, nor "
     "what is refused") {
-    const Folder folder;
     const Scene scene = randomScene(1, 3000);
     checkProgress(8, [&](const Progress& progress) {
         CHECK(folder.fileCount() == 0);

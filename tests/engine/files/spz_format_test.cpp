@@ -51,22 +51,31 @@ TEST_CASE_FIXTURE(InFolder, "both versions give what their bytes mean, in axes r
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    InFolder,
     "every version is read without gzip, too, whatever follows, and a container of version 4 with extensions "
-    "or not") {
-    const Folder folder;
+    "or not; SH of degree 4 are left out with a note") {
+    const std::string after = "and whatever follows";
     for (const std::uint32_t version : {2u, 3u}) {
         const std::string bytes = makeSpz(version).bytes();
         checkSameScene(loadBytes(folder, gzip(bytes)), loadBytes(folder, bytes));
-        checkSameScene(loadBytes(folder, gzip(bytes)), loadBytes(folder, bytes + "and whatever follows"));
+        checkSameScene(loadBytes(folder, gzip(bytes)), loadBytes(folder, bytes + after));
     }
     const Scene scene = loadBytes(folder, gzip(makeSpz(3).bytes()));
     checkSameScene(scene, loadBytes(folder, makeSpzContainer(makeVersion4())));
-    checkSameScene(scene, loadBytes(folder, makeSpzContainer(makeVersion4()) + "and whatever follows"));
+    checkSameScene(scene, loadBytes(folder, makeSpzContainer(makeVersion4()) + after));
     SpzText spz = makeVersion4(2);
     checkSameScene(scene, loadBytes(folder, makeSpzContainer(spz, "records of an extension")));
     spz.sh_degree = 0, spz.sh.clear();
     CHECK(loadBytes(folder, makeSpzContainer(spz)).positions == scene.positions);
+    spz = makeSpz(3);
+    spz.sh_degree = 4, spz.flags = 3;
+    spz.sh.assign(2 * 72, 130);
+    LoadNotes notes;
+    const Scene larger = loadBytes(folder, gzip(spz.bytes() + "records of an extension"), &notes);
+    CHECK(these(larger.sh_degree, larger.antialiased) == these(3, true));
+    REQUIRE_FALSE(notes.lines.empty());
+    CHECK(contains(notes.lines.back(), "degree 4"));
 }
 
 TEST_CASE_FIXTURE(InFolder, "the axes that an extension names are honoured: places, ellipsoids and colours") {
@@ -214,19 +223,6 @@ TEST_CASE_FIXTURE(InFolder, "whoever waits for a large scene hears how much is u
     }
 }
 
-TEST_CASE_FIXTURE(InFolder,
-                  "SH of degree 4 are left out with a note; bytes behind the splats do not matter") {
-    SpzText spz = makeSpz(3);
-    spz.sh_degree = 4;
-    spz.sh.assign(2 * 72, 130);
-    spz.flags = 3;
-    LoadNotes notes;
-    const Scene scene = loadBytes(folder, gzip(spz.bytes() + "records of an extension"), &notes);
-    CHECK(these(scene.sh_degree, scene.antialiased) == these(3, true));
-    REQUIRE_FALSE(notes.lines.empty());
-    CHECK(contains(notes.lines.back(), "degree 4"));
-}
-
 TEST_CASE_FIXTURE(InFolder, "an SPZ that does not fit is named") {
     SpzText spz = makeSpz(3);
     const auto errorWith = [&](auto SpzText::*key, auto value, bool in_gzip = true) {
@@ -262,19 +258,20 @@ TEST_CASE_FIXTURE(InFolder, "an SPZ that does not fit is named") {
 }
 
 TEST_CASE_FIXTURE(InFolder, "a container that does not fit is named") {
-    const std::string good = makeSpzContainer(makeVersion4());
-    const auto errorWith = [&](std::size_t at, const std::string& bytes) {
+    const std::string good = makeSpzContainer(makeVersion4()), most(4, '\xff');
+    const std::tuple<std::size_t, std::string, const char*> faults[]{
+        {15, "\5", "5 streams, expected 6"},
+        {15, "\xff", "255 streams"},
+        {16, "\x1f", "the table of streams is at byte 31"},
+        {16, most, "the table of streams is at byte 4294967295"},
+        {8, "\3", "stream 0: 18 bytes, expected 27"},
+        {8, most, "expected fewer than 256 per byte"},
+        {32, most + "\xff\xff\xff\x7f", "bytes are left of 9223372036854775807"},
+        {32 + 96, "xxxx", "stream 0: broken"}};
+    for (const auto& [at, bytes, message] : faults) {
         std::string broken = good;
-        return loadError(folder, broken.replace(at, bytes.size(), bytes));
-    };
-    CHECK(contains(errorWith(15, "\5"), "5 streams, expected 6"));
-    CHECK(contains(errorWith(15, "\xff"), "255 streams"));
-    CHECK(contains(errorWith(16, "\x1f"), "the table of streams is at byte 31"));
-    CHECK(contains(errorWith(16, "\xff\xff\xff\xff"), "the table of streams is at byte 4294967295"));
-    CHECK(contains(errorWith(8, "\3"), "stream 0: 18 bytes, expected 27"));
-    CHECK(contains(errorWith(8, "\xff\xff\xff\xff"), "expected fewer than 256 per byte"));
-    CHECK(contains(errorWith(32, std::string(7, '\xff') + "\x7f"), "bytes are left of 9223372036854775807"));
-    CHECK(contains(errorWith(32 + 96, "xxxx"), "stream 0: broken"));
+        CHECK(contains(loadError(folder, broken.replace(at, bytes.size(), bytes)), message));
+    }
 }
 
 }  // SUITE(spz_format)

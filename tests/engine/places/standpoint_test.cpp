@@ -156,20 +156,26 @@ TEST_CASE("an empty room is one by its size, and one whose units are no metres b
     CHECK(-in_small.view.eye.y == between(0.08, 0.22));
 }
 
-TEST_CASE("one stands alike in a scene a hundred times as large, and in one a thousand times smaller") {
-    for (const double scale : {100.0, 1.0, 0.001}) {
+TEST_CASE(
+    "one stands alike in a scene a hundred times as large, and in one a thousand times smaller, and nothing "
+    "at "
+    "the start is nearer than what is drawn") {
+    for (const double scale : {100.0, 1.0, 0.1, 0.001}) {
         CAPTURE(scale);
+        const StandpointSettings usual{60.0, 1.0 / scale, {}};
         Maker large = room(), toy = scannedToy();
-        const Standpoint in_room =
-            judgeStandpoint(large.turn({1, 0, 0, 0}, scale).scene(), {60.0, 1.0 / scale, {}});
+        const Standpoint in_room = judgeStandpoint(large.turn({1, 0, 0, 0}, scale).scene(), usual);
         CHECK(isInside(in_room));
         CHECK(-in_room.view.eye.y / scale == doctest::Approx(1.6).epsilon(0.06));
-        const Standpoint at_toy =
-            judgeStandpoint(toy.turn({1, 0, 0, 0}, scale).scene(), {60.0, 1.0 / scale, {}});
+        const Scene scene = toy.turn({1, 0, 0, 0}, scale).scene();
+        const Standpoint at_toy = judgeStandpoint(scene, usual);
+        const double away = glm::distance(at_toy.view.eye, at_toy.view.look);
         CHECK_FALSE(isInside(at_toy));
-        CHECK(glm::distance(at_toy.view.eye, at_toy.view.look) / scale ==
-              doctest::Approx(0.235).epsilon(0.1));
+        CHECK(away / scale == doctest::Approx(0.235).epsilon(0.1));
+        CHECK(usualNear(scene) == doctest::Approx(scale == 100.0 ? 0.2 : 0.2 * coreSize(scene)));
+        CHECK(away > 2.0 * usualNear(scene));
     }
+    CHECK(these(usualNear({}), usualNear(room().scene())) == these(0.2, 0.2));
 }
 
 TEST_CASE(
@@ -229,18 +235,6 @@ TEST_CASE("what is solid is no room, and a huge splat at the head of the file mo
         CHECK(glm::distance(judgeStandpoint(scene).view.eye, before.eye) <
               0.05 * glm::distance(before.eye, before.look));
     }
-}
-
-TEST_CASE("nothing at the start is nearer than what is drawn") {
-    for (const double scale : {100.0, 1.0, 0.1, 0.001}) {
-        CAPTURE(scale);
-        Maker toy = scannedToy();
-        const Scene scene = toy.turn({1, 0, 0, 0}, scale).scene();
-        const Standpoint point = judgeStandpoint(scene, {60.0, 1.0 / scale, {}});
-        CHECK(usualNear(scene) == doctest::Approx(scale == 100.0 ? 0.2 : 0.2 * coreSize(scene)));
-        CHECK(glm::distance(point.view.eye, point.view.look) > 2.0 * usualNear(scene));
-    }
-    CHECK(these(usualNear({}), usualNear(room().scene())) == these(0.2, 0.2));
 }
 
 TEST_CASE("splats that nobody sees, and those that are equal, place nobody at infinity") {

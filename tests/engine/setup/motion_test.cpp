@@ -100,11 +100,6 @@ SCRIPT(motion, "engine/setup/motion") {
         {[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
 }
 
-TEST_CASE("what is no file is no recording") {
-    CHECK_THROWS_AS(readHeadMotion("/nowhere/motion.csv", MotionAxes::kOpenXr), Error);
-    CHECK_THROWS_AS(readHeadMotion("/", MotionAxes::kOpenXr), Error);
-}
-
 TEST_CASE("poses between samples lie on the way") {
     // A quarter turn to the left in two seconds. The second orientation is written with the opposite sign,
     // which is the same turn.

@@ -42,6 +42,16 @@ struct Chooser {
                                const LevelsThere& there = {}) {
         return chooser.choose(std::span(&eye, 1), settings, there);
     }
+    // The splats of the leaves for which this is false, and true.
+    template <typename Is>
+    [[nodiscard]] std::array<std::uint64_t, 2> splatsWhere(const LevelChoices& choices, const Is& is) const {
+        std::array<std::uint64_t, 2> sum{};
+        for (std::size_t l = 0; l < leaves.size(); ++l) {
+            const std::uint32_t level = choices.levels[l];
+            sum[is(leaves[l]) ? 1 : 0] += level == kNone ? 0 : leaves[l].levels[level].splats.count;
+        }
+        return sum;
+    }
 };
 
 ChoiceSettings within(std::uint64_t splats) {
@@ -51,12 +61,13 @@ ChoiceSettings within(std::uint64_t splats) {
     return settings;
 }
 
-std::uint64_t splatsOf(const std::vector<LodLeaf>& leaves, const std::vector<std::uint32_t>& levels) {
-    std::uint64_t sum = 0;
-    for (std::size_t l = 0; l < leaves.size(); ++l) {
-        sum += levels[l] == kNone ? 0 : leaves[l].levels[levels[l]].splats.count;
-    }
-    return sum;
+// How far apart in pixels splats lie between two levels of a leaf that is z metres from eyeAt({0.5, 0.5,
+// -1.0}).
+double apartPx(const LodLeaf& leaf, std::size_t z, std::uint32_t a, std::uint32_t b) {
+    const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
+    return size_px / std::pow(static_cast<double>(leaf.levels[a].splats.count) *
+                                  static_cast<double>(leaf.levels[b].splats.count),
+                              0.25);
 }
 
 TEST_CASE("the coarsest level of every leaf comes first, the nearest in view before the others") {
@@ -83,7 +94,7 @@ TEST_CASE("the budget is kept and used, whatever it is") {
         Chooser field(leaves);
         const LevelChoices& choices = field.choose(eye, within(budget));
         CHECK(choices.splats <= budget);
-        CHECK(choices.splats == splatsOf(leaves, choices.levels));
+        CHECK(choices.splats == field.splatsWhere(choices, [](const LodLeaf&) { return true; })[1]);
         if (budget <= 300'000) { CHECK(choices.splats > 0.9 * static_cast<double>(budget)); }
         CHECK(choices.coarsest.size() == leaves.size());
     }
@@ -108,16 +119,9 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
         before = level;
         if (z < 2) { continue; }
         // The step that was not taken would have led below half a pixel; the last one that was taken did not.
-        const double size_px =
-            500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
-        const auto apart = [&](std::uint32_t a, std::uint32_t b) {
-            const auto& levels = field.leaves[z * 64 + 32].levels;
-            return size_px / std::pow(static_cast<double>(levels[a].splats.count) *
-                                          static_cast<double>(levels[b].splats.count),
-                                      0.25);
-        };
-        if (level > 0) { CHECK(apart(level, level - 1) < 0.5); }
-        if (level < 5) { CHECK(apart(level + 1, level) >= 0.5); }
+        const LodLeaf& leaf = field.leaves[z * 64 + 32];
+        if (level > 0) { CHECK(apartPx(leaf, z, level, level - 1) < 0.5); }
+        if (level < 5) { CHECK(apartPx(leaf, z, level + 1, level) >= 0.5); }
     }
     CHECK(choices.levels[32] == 0);
     CHECK(before > 0);
@@ -143,13 +147,7 @@ TEST_CASE(
         CHECK(level >= std::min(usual, 1u));
         finer += level < usual;
         if (level < 2) { continue; }
-        // A quarter of a pixel.
-        const double size_px =
-            500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
-        const auto& levels = leaves[z * 64 + 32].levels;
-        const double between = static_cast<double>(levels[level].splats.count) *
-                               static_cast<double>(levels[level - 1].splats.count);
-        CHECK(size_px / std::pow(between, 0.25) < 0.25);
+        CHECK(apartPx(leaves[z * 64 + 32], z, level, level - 1) < 0.25);
     }
     CHECK(finer > 0);
 }
@@ -159,12 +157,7 @@ TEST_CASE("what lies behind is the first to go and the last to come") {
     // Splats in front of and behind somebody in the middle who looks that way.
     const auto look = [&](double yaw_rad) {
         const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, 8.5}, yaw_rad), within(300'000));
-        std::array<std::uint64_t, 2> sum{};
-        for (std::size_t l = 0; l < field.leaves.size(); ++l) {
-            sum[field.leaves[l].low.z < 8.0f ? 1 : 0] +=
-                field.leaves[l].levels[choices.levels[l]].splats.count;
-        }
-        return sum;
+        return field.splatsWhere(choices, [](const LodLeaf& leaf) { return leaf.low.z < 8.0f; });
     };
     const auto ahead = look(0.0), turned = look(std::numbers::pi);
     CHECK(ahead[0] > 4 * ahead[1]);
@@ -186,10 +179,7 @@ TEST_CASE(
     }
     Chooser field(leaves);
     const LevelChoices& choices = field.choose(eye, budget);
-    std::array<std::uint64_t, 2> splats{};
-    for (std::size_t l = 0; l < leaves.size(); ++l) {
-        splats[leaves[l].low.x < 0.0f ? 0 : 1] += leaves[l].levels[choices.levels[l]].splats.count;
-    }
+    const auto splats = field.splatsWhere(choices, [](const LodLeaf& leaf) { return leaf.low.x >= 0.0f; });
     CHECK(choices.splats <= budget.splats);
     CHECK(splats[1] > 2 * splats[0]);
     // If they are the same everywhere, errors do not affect how levels depend on distance.

@@ -28,10 +28,27 @@ void want(SeriesLoader& loader, const std::vector<std::size_t>& scenes) {
     waitUntil([&] { return loader.tryWant(scenes); });
 }
 
-TEST_CASE("with room for all every frame is read once, in order, and stays") {
+struct Film {
+    const SceneTraits traits = traitsOf(shifted(0));
+    const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
+
+    [[nodiscard]] bool shows(const SeriesLoader::Held& held, std::size_t scene) const {
+        return std::ranges::equal(held->splats.front().bytes(),
+                                  makeSceneFrame(shifted(scene), traits).front().bytes());
+    }
+};
+
+// Until the next frames are there.
+void readFrom(SeriesLoader& loader, std::size_t first, std::size_t count) {
+    want(loader, from(first));
+    for (std::size_t i = 0; i < count; ++i) {
+        waitUntil([&] { return loader.tryGet((first + i) % kScenes) != nullptr; });
+    }
+}
+
+TEST_CASE_FIXTURE(Film, "with room for all every frame is read once, in order, and stays") {
     std::mutex mutex;
     std::vector<std::size_t> read;
-    const SceneTraits traits = traitsOf(shifted(0));
     SeriesLoader loader(
         [&](std::size_t scene) {
             const std::lock_guard lock(mutex);
@@ -39,12 +56,8 @@ TEST_CASE("with room for all every frame is read once, in order, and stays") {
             return shifted(scene);
         },
         kScenes, traits, {});
-    want(loader, from(4));
-    for (std::size_t scene = 0; scene < kScenes; ++scene) {
-        waitUntil([&] { return loader.tryGet(scene) != nullptr; });
-        CHECK(std::ranges::equal(loader.get(scene)->splats.front().bytes(),
-                                 makeSceneFrame(shifted(scene), traits).front().bytes()));
-    }
+    readFrom(loader, 4, kScenes);
+    for (std::size_t scene = 0; scene < kScenes; ++scene) { CHECK(shows(loader.get(scene), scene)); }
     want(loader, from(7));
     CHECK(loader.get(6) == loader.tryGet(6));
     const std::lock_guard lock(mutex);
@@ -52,8 +65,8 @@ TEST_CASE("with room for all every frame is read once, in order, and stays") {
     CHECK(loader.takeLines(Waits::kBriefly).empty());
 }
 
-TEST_CASE("a frame that cannot be read is told once, whatever went wrong, and the others come") {
-    const SceneTraits traits = traitsOf(shifted(0));
+TEST_CASE_FIXTURE(Film,
+                  "a frame that cannot be read is told once, whatever went wrong, and the others come") {
     SeriesLoader loader(
         [&](std::size_t scene) {
             if (scene == 1) { fail("the first trouble"); }
@@ -75,9 +88,7 @@ TEST_CASE("a frame that cannot be read is told once, whatever went wrong, and th
     CHECK_THROWS_WITH_AS((void)loader.get(3), "the third trouble", Error);
 }
 
-TEST_CASE("within a limit the next ones are there, and what is needed last makes room") {
-    const SceneTraits traits = traitsOf(shifted(0));
-    const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
+TEST_CASE_FIXTURE(Film, "within a limit the next ones are there, and what is needed last makes room") {
     std::atomic<int> reads = 0;
     SeriesLoader loader(
         [&](std::size_t scene) {
@@ -85,12 +96,8 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
             return shifted(scene);
         },
         kScenes, traits, {.most_bytes = 5 * bytes, .threads = 2});
-    for (const std::size_t first :
-         {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{9}, std::size_t{3}}) {
-        want(loader, from(first));
-        for (std::size_t i = 0; i < 4; ++i) {
-            waitUntil([&] { return loader.tryGet((first + i) % kScenes) != nullptr; });
-        }
+    for (const std::size_t first : {0u, 1u, 2u, 9u, 3u}) {
+        readFrom(loader, first, 4);
         CHECK(loader.bytesKept() <= 5 * bytes);
     }
     CHECK(reads < 24);
@@ -99,16 +106,14 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
                        {.most_bytes = 1, .threads = 1});
     want(small, from(0));
     for (std::size_t scene = 0; scene < kScenes; ++scene) {
-        want(small, from(scene));
-        waitUntil([&] { return small.tryGet(scene) != nullptr; });
+        readFrom(small, scene, 1);
         CHECK(small.bytesKept() <= SeriesLoader::kLeastKept * bytes);
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    Film,
     "a frame that is held stays where it is, whatever else is needed, and makes room once nobody holds it") {
-    const SceneTraits traits = traitsOf(shifted(0));
-    const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
     std::atomic<int> reads_of_first = 0;
     SeriesLoader loader(
         [&](std::size_t scene) {
@@ -116,22 +121,15 @@ TEST_CASE(
             return shifted(scene);
         },
         kScenes, traits, {.most_bytes = 1, .threads = 1});
-    const auto readFrom = [&](std::size_t first) {
-        want(loader, from(first));
-        for (std::size_t i = 0; i < SeriesLoader::kLeastKept; ++i) {
-            waitUntil([&] { return loader.tryGet((first + i) % kScenes) != nullptr; });
-        }
-    };
     SeriesLoader::Held held = loader.get(0);
-    readFrom(4);
-    readFrom(8);
+    readFrom(loader, 4, SeriesLoader::kLeastKept);
+    readFrom(loader, 8, SeriesLoader::kLeastKept);
     CHECK(loader.get(0) == held);
-    CHECK(
-        std::ranges::equal(held->splats.front().bytes(), makeSceneFrame(shifted(0), traits).front().bytes()));
+    CHECK(shows(held, 0));
     CHECK(reads_of_first == 1);
     held.reset();
-    readFrom(4);
-    readFrom(8);
+    readFrom(loader, 4, SeriesLoader::kLeastKept);
+    readFrom(loader, 8, SeriesLoader::kLeastKept);
     CHECK(loader.bytesKept() <= SeriesLoader::kLeastKept * bytes);
     CHECK(loader.get(0) != nullptr);
     CHECK(reads_of_first == 2);

@@ -84,19 +84,13 @@ TEST_CASE("machines of this network are told from those of the public web") {
                            "2002:808:808::a00:1", "2003:a00:1::", "example.org", "10.example.org"}) {
         CHECK_FALSE_MESSAGE(isPrivateAddress(ip), ip);
     }
-    using Groups = std::array<std::uint16_t, 8>;
-    CHECK(these(parseIp("1.2.3.255"), parseIp("::"), parseIp("1::8"), parseIp("::7:8")) ==
-          these(Groups{0, 0, 0, 0, 0, 0xffff, 0x102, 0x3ff}, Groups{}, Groups{1, 0, 0, 0, 0, 0, 0, 8},
-                Groups{0, 0, 0, 0, 0, 0, 7, 8}));
-    CHECK(these(parseIp("1:2:3:4:5:6:7::"), parseIp("1:2:3:4:5:6:7:fFfF"), parseIp("1::5:6:1.2.3.4%eth0")) ==
-          these(Groups{1, 2, 3, 4, 5, 6, 7, 0}, Groups{1, 2, 3, 4, 5, 6, 7, 0xffff},
-                Groups{1, 0, 0, 0, 5, 6, 0x102, 0x304}));
-    std::istringstream others(
-        ": ::: 1 1.2.3 1.2.3.4.5 1.2.3.256 1.2.3. 1.2.3.4. a.b.c.d 1:2:3:4:5:6:7 1:2:3:4:5:6:7:8:9 "
-        "1:2:3:4:5:6:7:8:: 1::2::3 "
-        ":1:2:3:4:5:6:7 1:2:3:4:5:6:7: 12345:: g:: 1.2.3.4:: 1:2:3:4:5:6:7:1.2.3.4 -1:: 1::+2");
     CHECK(!parseIp(""));
-    for (std::string none; others >> none;) { CHECK_MESSAGE(!parseIp(none), none); }
+    for (const std::string& none :
+         wordsIn(": ::: 1 1.2.3 1.2.3.4.5 1.2.3.256 1.2.3. 1.2.3.4. a.b.c.d 1:2:3:4:5:6:7 1:2:3:4:5:6:7:8:9 "
+                 "1:2:3:4:5:6:7:8:: 1::2::3 :1:2:3:4:5:6:7 1:2:3:4:5:6:7: 12345:: g:: 1.2.3.4:: "
+                 "1:2:3:4:5:6:7:1.2.3.4 -1:: 1::+2")) {
+        CHECK_MESSAGE(!parseIp(none), none);
+    }
 }
 
 TEST_CASE_FIXTURE(Served, "a scene at an address is the same as on the disk, whatever its format") {
