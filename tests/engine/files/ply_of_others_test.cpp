@@ -171,17 +171,17 @@ TEST_CASE_FIXTURE(InFolder,
         checkSays(notes.lines, note);
         return scene;
     };
+    const auto with = [](PlyText ply, const std::string& name, double a, double b, double c) {
+        ply.columns.push_back({name, "float", {a, b, c}});
+        return ply;
+    };
     for (const Encoding encoding : kEncodings) {
-        PlyText ply = makeIn(encoding, 9, true);
-        const auto add = [&](const std::string& name, double a, double b, double c) {
-            ply.columns.push_back({name, "float", {a, b, c}});
-        };
-        add("trbf_center", 0.25, 0.5, 1.0);  // shown at the median time
-        add("trbf_scale", std::log(0.25), 0.0, 0.0);
-        add("motion_0", 2.0, 9.0, 4.0);  // linear along x, quadratic along z, cubic along y
-        add("motion_5", 16.0, 9.0, 0.0);
-        add("motion_7", 0.0, 9.0, 8.0);
-        add("omega_1", 8.0, 9.0, 0.0);
+        PlyText ply = with(makeIn(encoding, 9, true), "trbf_center", 0.25, 0.5, 1.0);  // the median is shown
+        ply = with(ply, "trbf_scale", std::log(0.25), 0.0, 0.0);
+        ply = with(ply, "motion_0", 2.0, 9.0, 4.0);  // linear along x, quadratic along z, cubic along y
+        ply = with(ply, "motion_5", 16.0, 9.0, 0.0);
+        ply = with(ply, "motion_7", 0.0, 9.0, 8.0);
+        ply = with(ply, "omega_1", 8.0, 9.0, 0.0);
         const Scene scene = load(ply,
                                  "(trbf_center, trbf_scale, motion_0, motion_5, motion_7, omega_1): shown as "
                                  "the still of one moment, 0.5");
@@ -192,30 +192,23 @@ TEST_CASE_FIXTURE(InFolder,
               std::vector<glm::vec3>{{1.5f, 0.5f, 5.0f}, {2.0f, 0.25f, 5.0f}, {-5.0f, -0.875f, 6.0f}});
         CHECK(these(scene.opacities[0], scene.opacities[1], scene.opacities[2]) ==
               these(opacity(0.0, std::exp(-1.0)), opacity(2.0, 1.0), opacity(-2.0, std::exp(-0.25))));
-        CHECK(scene.sh == loadScene(folder.write("still.ply", makeIn(encoding, 9, true).bytes())).sh);
-        CHECK(scene.rotations[1] == loadScene(folder.file("still.ply")).rotations[1]);
-        CHECK(std::abs(glm::dot(scene.rotations[0], loadScene(folder.file("still.ply")).rotations[0])) ==
-              doctest::Approx(std::sqrt(0.5)));
+        const Scene still = loadScene(folder.write("still.ply", makeIn(encoding, 9, true).bytes()));
+        CHECK(these(scene.sh, scene.rotations[1]) == these(still.sh, still.rotations[1]));
+        CHECK(std::abs(glm::dot(scene.rotations[0], still.rotations[0])) == doctest::Approx(std::sqrt(0.5)));
     }
-    PlyText fading = makePly();
-    fading.columns.push_back({"t", "float", {0.0, 1.0, 3.0}});
-    fading.columns.push_back({"scale_t", "float", {0.0, 0.0, std::log(2.0)}});
+    const PlyText fading = with(with(makePly(), "t", 0.0, 1.0, 3.0), "scale_t", 0.0, 0.0, std::log(2.0));
     const Scene faded = load(fading, "(t, scale_t): shown as the still of one moment, 1");
     CHECK(faded.opacities[0] == doctest::Approx(0.5 * std::exp(-0.5)));
     CHECK(faded.opacities[2] == doctest::Approx(std::exp(-0.5) / (1.0 + std::exp(2.0))));
     // Without harmonics, Spacetime Gaussians store colours, or their logits.
-    PlyText coloured = makePly();
-    coloured.columns.push_back({"trbf_center", "float", {0.0, 0.0, 0.0}});
+    const PlyText coloured = with(makePly(), "trbf_center", 0.0, 0.0, 0.0);
     const auto shown = [](const Scene& scene, std::size_t i) {
         return 0.5 + 0.28209479177387814 * double(scene.sh[i]);
     };
     CHECK(shown(load(coloured, "(trbf_center): all"), 1) == doctest::Approx(0.25));
-    coloured.columns.push_back({"f_dc_3", "float", {0.0, 0.0, 0.0}});
-    CHECK(shown(load(coloured, "; its colours lack what a network"), 4) ==
+    CHECK(shown(load(with(coloured, "f_dc_3", 0.0, 0.0, 0.0), "; its colours lack what a network"), 4) ==
           doctest::Approx(1.0 / (1.0 + std::exp(-0.5))));
-    PlyText unknown = makePly();
-    unknown.columns.push_back({"motion_0", "float", {1.0, 2.0, 3.0}});
-    checkSameScene(load(unknown, "(motion_0): all are shown at once"),
+    checkSameScene(load(with(makePly(), "motion_0", 1.0, 2.0, 3.0), "(motion_0): all are shown at once"),
                    loadScene(folder.write("still.ply", makePly().bytes())));
 }
 

@@ -25,17 +25,31 @@ std::vector<float> sortedX(const Scene& scene) {
     return values;
 }
 
-TEST_CASE(
+struct Wall : InFolder {
+    const Scene scene = makeBuiltin("builtin:slanted-wall");
+
+    // Of the scene that is written to a folder of this name.
+    [[nodiscard]] std::string pathOf(const std::string& name) const {
+        return folder.file(name + "/lod-meta.json");
+    }
+    [[nodiscard]] LodMeta metaOf(const std::string& name) const {
+        const std::string text = textIn(pathOf(name));
+        return parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
+    }
+    [[nodiscard]] Scene picked(const std::vector<std::uint32_t>& splats) const {
+        return pickSplats(scene, splats);
+    }
+};
+
+TEST_CASE_FIXTURE(
+    Wall,
     "levels are written that read back whole, the same bytes every time; a folder that is cancelled or taken "
     "is left as it was") {
-    const Folder folder;
-    const Scene scene = makeBuiltin("builtin:slanted-wall");
     std::vector<std::uint32_t> half;
     for (std::uint32_t splat = 0; splat < scene.size(); splat += 2) { half.push_back(splat); }
-    const Scene coarse = pickSplats(scene, half);
+    const Scene coarse = picked(half);
     const auto write = [&](const std::string& name, const Progress& progress = {}) {
-        StreamedWriter writer(folder.file(name) + "/lod-meta.json",
-                              {.chunk_splats = 700, .leaf_splats = 250});
+        StreamedWriter writer(pathOf(name), {.chunk_splats = 700, .leaf_splats = 250});
         writer.cutLeaves(scene.positions);
         writer.add(0, scene, {}, 0, progress);
         writer.add(1, coarse);
@@ -61,39 +75,33 @@ TEST_CASE(
     CHECK(filesIn(folder.file("")).size() == 2 * files.size());
 }
 
-TEST_CASE("large splats of a coarser level do not make a leaf's box larger") {
-    const Folder folder;
-    const Scene scene = makeBuiltin("builtin:slanted-wall");
-    Scene large = pickSplats(scene, std::vector<std::uint32_t>{0, 700, 1600});
+TEST_CASE_FIXTURE(Wall, "large splats of a coarser level do not make a leaf's box larger") {
+    Scene large = picked({0, 700, 1600});
     for (glm::vec2& scale : large.scales) { scale = glm::vec2(50.0f); }
     const auto boxesWith = [&](const std::string& name, const Scene& coarse) {
-        StreamedWriter writer(folder.file(name) + "/lod-meta.json", {.leaf_splats = 250});
+        StreamedWriter writer(pathOf(name), {.leaf_splats = 250});
         writer.cutLeaves(scene.positions);
         writer.add(0, scene);
         writer.add(1, coarse);
         writer.finish();
-        const std::string text = textIn(folder.file(name) + "/lod-meta.json");
         std::vector<glm::vec3> corners;
-        for (const LodLeaf& leaf : parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json").tree) {
+        for (const LodLeaf& leaf : metaOf(name).tree) {
             corners.insert(corners.end(), {leaf.low, leaf.high});
         }
         return corners;
     };
-    CHECK(boxesWith("large", large) == boxesWith("small", pickSplats(scene, std::vector<std::uint32_t>{0})));
+    CHECK(boxesWith("large", large) == boxesWith("small", picked({0})));
 }
 
-TEST_CASE("an environment is a chunk of its own that every level shows, and no leaf holds") {
-    const Folder folder;
-    const Scene scene = makeBuiltin("builtin:slanted-wall");
-    Scene sky = pickSplats(scene, std::vector<std::uint32_t>{0, 1, 2});
+TEST_CASE_FIXTURE(Wall, "an environment is a chunk of its own that every level shows, and no leaf holds") {
+    Scene sky = picked({0, 1, 2});
     for (glm::vec3& position : sky.positions) { position.z += 900.0f; }
-    StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = 250});
+    StreamedWriter writer(pathOf("a"), {.leaf_splats = 250});
     writer.cutLeaves(scene.positions);
     for (const std::size_t level : {0u, 1u}) { writer.add(level, scene); }
     writer.addEnvironment(sky);
     writer.finish();
-    const std::string text = textIn(folder.file("a") + "/lod-meta.json");
-    const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
+    const LodMeta meta = metaOf("a");
     CHECK(these(meta.environment, meta.levels[0].splats) == these("env/meta.json", scene.size()));
     for (const LodLeaf& leaf : meta.tree) { CHECK(leaf.high.z < 100.0f); }
     for (const std::uint32_t level : {0u, 1u}) {
@@ -104,35 +112,34 @@ TEST_CASE("an environment is a chunk of its own that every level shows, and no l
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    Wall,
     "what levels are off by is written for each leaf: it adds up, never falls, and is the level's mean where "
     "nobody looked") {
-    const Folder folder;
-    Scene scene = makeBuiltin("builtin:slanted-wall");
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        scene.positions[i] = glm::vec3(static_cast<float>(i), 0.0f, 0.0f);
+    Scene row = scene;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        row.positions[i] = glm::vec3(static_cast<float>(i), 0.0f, 0.0f);
     }
-    const float cut = scene.positions[scene.size() / 2].x;
-    StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = scene.size() / 2 + 1});
-    writer.cutLeaves(scene.positions);
-    writer.add(0, scene);
+    const float cut = row.positions[row.size() / 2].x;
+    StreamedWriter writer(pathOf("a"), {.leaf_splats = row.size() / 2 + 1});
+    writer.cutLeaves(row.positions);
+    writer.add(0, row);
     const auto sees = [&](double weight, double left, double right) {
         std::vector<SplatError> errors;
-        for (const glm::vec3& p : scene.positions) {
+        for (const glm::vec3& p : row.positions) {
             errors.push_back({weight, weight * (p.x < cut ? left : right)});
         }
         return errors;
     };
-    writer.add(1, scene, sees(2.0, 0.25, 0.5));
-    writer.add(2, scene, sees(1.0, 0.125, 0.25), 1);
+    writer.add(1, row, sees(2.0, 0.25, 0.5));
+    writer.add(2, row, sees(1.0, 0.125, 0.25), 1);
     std::vector<SplatError> half = sees(1.0, 0.125, 1.0);
     for (std::size_t i = 0; i < half.size(); ++i) {
-        half[i] = scene.positions[i].x < cut ? half[i] : SplatError{};
+        half[i] = row.positions[i].x < cut ? half[i] : SplatError{};
     }
-    writer.add(3, scene, half);
+    writer.add(3, row, half);
     writer.finish();
-    const std::string text = textIn(folder.file("a") + "/lod-meta.json");
-    const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
+    const LodMeta meta = metaOf("a");
     REQUIRE(these(meta.has_errors, meta.tree.size()) == these(true, 2u));
     for (const LodLeaf& leaf : meta.tree) {
         const bool is_left = leaf.low.x < 0.0f;
@@ -141,49 +148,41 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    Wall,
     "blocks are whole leaves with each splat in one, no larger than asked for, and levels may be added block "
     "by block") {
-    const Folder folder;
-    const Scene scene = makeBuiltin("builtin:slanted-wall");
-    StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = 100});
+    StreamedWriter writer(pathOf("a"), {.leaf_splats = 100});
     writer.cutLeaves(scene.positions);
     std::vector<std::uint32_t> all;
     for (const std::vector<std::uint32_t>& block : writer.sortInto(writer.cutBlocks(500), scene.positions)) {
         CHECK(these(block.size() <= 500, block.size() > 200) == these(true, true));
         all.insert(all.end(), block.begin(), block.end());
-        for (const std::size_t level : {0u, 1u}) { writer.add(level, pickSplats(scene, block)); }
+        for (const std::size_t level : {0u, 1u}) { writer.add(level, picked(block)); }
     }
     std::ranges::sort(all);
     for (std::uint32_t splat = 0; splat < scene.size(); ++splat) { REQUIRE(all.at(splat) == splat); }
     CHECK(all.size() == scene.size());
     CHECK(writer.counts() == std::vector<std::uint64_t>(2, scene.size()));
     writer.finish();
-    const std::string text = textIn(folder.file("a") + "/lod-meta.json");
-    for (const LodLeaf& leaf : parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json").tree) {
-        CHECK(leaf.levels.size() == 2);
-    }
+    for (const LodLeaf& leaf : metaOf("a").tree) { CHECK(leaf.levels.size() == 2); }
     CHECK(sortedX(loadScene(folder.file("a"))).size() == scene.size());
 }
 
-TEST_CASE("a scene that waits on the disk comes back as it was, and leaves nothing there") {
-    const Folder folder;
-    const Scene discs = makeBuiltin("builtin:slanted-wall");
-    Scene solids = pickSplats(discs, std::vector<std::uint32_t>{3, 1});
+TEST_CASE_FIXTURE(Wall, "a scene that waits on the disk comes back as it was, and leaves nothing there") {
+    Scene solids = picked({3, 1});
     solids.thicknesses = {0.5f, 0.25f};
     {
         SceneSpill spill(folder.file("spill"));
-        const std::size_t middle = discs.size() / 2;
-        std::vector<std::uint32_t> all(discs.size());
+        std::vector<std::uint32_t> all(scene.size());
         std::iota(all.begin(), all.end(), 0u);
-        spill.add(0, pickSplats(discs, std::span(all).first(middle)));
+        spill.add(0, pickSplats(scene, std::span(all).first(all.size() / 2)));
         spill.add(1, solids);
-        spill.add(0, pickSplats(discs, std::span(all).subspan(middle)));
+        spill.add(0, pickSplats(scene, std::span(all).subspan(all.size() / 2)));
         for (std::size_t i = 0; i < 2; ++i) {
-            const Scene &was = i == 0 ? discs : solids, is = spill.read(i);
-            CHECK(these(is.positions, is.rotations, is.scales, is.thicknesses, is.opacities, is.sh,
-                        is.name) == these(was.positions, was.rotations, was.scales, was.thicknesses,
-                                          was.opacities, was.sh, was.name));
+            const Scene &was = i == 0 ? scene : solids, is = spill.read(i);
+            checkSameScene(is, was);
+            CHECK(is.name == was.name);
         }
     }
     CHECK(!std::filesystem::exists(folder.file("spill")));

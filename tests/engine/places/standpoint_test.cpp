@@ -162,7 +162,7 @@ TEST_CASE(
     "the start is nearer than what is drawn") {
     for (const double scale : {100.0, 1.0, 0.1, 0.001}) {
         CAPTURE(scale);
-        const StandpointSettings usual{60.0, 1.0 / scale, {}};
+        const StandpointWish usual{60.0, 1.0 / scale, {}};
         Maker large = room(), toy = scannedToy();
         const Standpoint in_room = judgeStandpoint(large.turn({1, 0, 0, 0}, scale).scene(), usual);
         CHECK(isInside(in_room));
