@@ -8,14 +8,12 @@
 
 SUITE(packed_scene) {
 
-TEST_CASE("a scene within gzip is the scene itself, in one stream or several") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a scene within gzip is the scene itself, in one stream or several") {
     const std::string ply = makePly(9).bytes();
     const Scene plain = loadScene(folder.write("plain.ply", ply));
     for (const std::string& packed : {gzip(ply), gzip(ply.substr(0, 100)) + gzip(ply.substr(100)),
                                       gzip(ply) + gzip(""), gzip(ply) + std::string(100'000, '\0')}) {
-        LoadNotes notes;
-        const Scene scene = loadScene(folder.write("a.ply.gz", packed), 0, &notes);
+        const auto [notes, scene] = readScene(folder.write("a.ply.gz", packed));
         checkSameScene(plain, scene);
         CHECK(scene.name == folder.file("a.ply.gz"));
         CHECK(notes.lines.empty());
@@ -24,19 +22,20 @@ TEST_CASE("a scene within gzip is the scene itself, in one stream or several") {
             (void)loadScene(folder.file("a.ply.gz"), 0, nullptr, progress);
         });
     }
-    const auto errorOf = [&](const std::string& bytes) { return loadError(folder.write("b.gz", bytes)); };
-    CHECK(contains(errorOf(gzip(ply).substr(0, 300)), "b.gz: ends within its gzip stream"));
-    CHECK(contains(errorOf(gzip(ply) + "more"), "b.gz: broken gzip stream"));
-    CHECK(contains(errorOf(gzip(gzip(ply))), "b.gz: is packed twice"));
-    CHECK(
-        contains(errorOf(gzip(std::string(5'000'000, ' '))), "expected at most 256 times as many as packed"));
-    CHECK(contains(errorOf(gzip("no scene")), "b.gz: not a scene file of a known format"));
+    for (const auto& [bytes, message] :
+         {std::pair(gzip(ply).substr(0, 300), "b.gz: ends within its gzip stream"),
+          {gzip(ply) + "more", "b.gz: broken gzip stream"},
+          {gzip(gzip(ply)), "b.gz: is packed twice"},
+          {gzip(std::string(5'000'000, ' ')), "expected at most 256 times as many as packed"},
+          {gzip("no scene"), "b.gz: not a scene file of a known format"}}) {
+        CHECK(contains(loadError(folder.write("b.gz", bytes)), message));
+    }
 }
 
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    InFolder,
     "a folder's scene is found by names and by the first 64 KiB of what is packed: what lies behind them is "
     "not unpacked") {
-    const Folder folder;
     PlyText large = makePly();
     std::mt19937 random(1);
     for (Column& column : large.columns) {
@@ -70,8 +69,8 @@ TEST_CASE(
     CHECK(contains(loadError(folder.file("in")), "b.ply.gz: ends within its gzip stream"));
 }
 
-TEST_CASE("a scene is not unpacked into more room than there is, and leaves nothing there") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder,
+                  "a scene is not unpacked into more room than there is, and leaves nothing there") {
     std::string noise(40 << 20, ' ');
     std::mt19937 random(1);
     for (std::size_t i = 0; i < noise.size(); i += 64) { noise[i] = static_cast<char>(random()); }
@@ -106,10 +105,10 @@ TEST_CASE("a scene is not unpacked into more room than there is, and leaves noth
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE(
+TEST_CASE_FIXTURE(
+    InFolder,
     "a zip archive with one scene in it is that scene; one with several, none or a password is told in a "
     "line") {
-    const Folder folder;
     using Entries = std::vector<std::pair<std::string, std::string>>;
     const auto zip = [](const Entries& entries, bool deflated = false) { return makeZip(entries, deflated); };
     const std::string ply = makePly(9).bytes(), sog = makeZip(makeSog()), spz = gzip(makeSpz(3).bytes());
@@ -155,8 +154,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "what a scene in a zip archive names beside it is in that archive") {
     const std::string gltf = makeGltf().json(R"(,"uri":"parts/a%20b.bin")"), binary = makeGltf().binary();
     const Scene whole = loadScene(folder.write("a.glb", makeGltf().glb()));
     for (const char* prefix : {"", "in/", "in\\"}) {
@@ -168,20 +166,18 @@ TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
     }
     (void)folder.write("a.bin", binary);  // next to the archive, not in it
     const std::string beside = makeGltf().json(R"(,"uri":"a.bin")");
+    const auto errorOf = [&](const SogText& files) {
+        return loadError(folder.write("a.zip", makeZip(files, true)));
+    };
     CHECK(
-        contains(loadError(folder.write("a.zip", makeZip(SogText{{"in/a.gltf", beside}, {"a.bin", binary}}))),
-                 "a.zip: in/a.bin: not in the archive"));
-    CHECK(contains(
-        loadError(folder.write("a.zip", makeZip(SogText{{"a.gltf", beside}, {"a.bin", binary.substr(1)}}))),
-        fmt::format("{} bytes", binary.size() - 1)));
+        contains(errorOf({{"in/a.gltf", beside}, {"a.bin", binary}}), "a.zip: in/a.bin: not in the archive"));
+    CHECK(contains(errorOf({{"a.gltf", beside}, {"a.bin", binary.substr(1)}}),
+                   fmt::format("{} bytes", binary.size() - 1)));
     // A file that is named again and again, as in a hostile scene, is not unpacked endlessly.
     const auto naming = [&](int times) {
         std::string uri = R"(,"uri":"a.bin")";
         for (int i = 1; i < times; ++i) { uri += R"(},{"byteLength":4,"uri":"a.bin")"; }
-        return loadError(folder.write(
-            "a.zip",
-            makeZip(SogText{{"a.gltf", makeGltf().json(uri)}, {"a.bin", binary + std::string(300'000, '\0')}},
-                    true)));
+        return errorOf({{"a.gltf", makeGltf().json(uri)}, {"a.bin", binary + std::string(300'000, '\0')}});
     };
     CHECK(naming(1).empty());
     CHECK(contains(naming(4), "a.zip: the files that it names are longer than"));

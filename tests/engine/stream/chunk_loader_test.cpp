@@ -82,9 +82,9 @@ TEST_CASE("what is wished for comes whole, the coarsest level before any finer o
     CHECK(files.size() > 4);
     const std::optional<LoaderWork> work = loader.tryWork();
     REQUIRE(work.has_value());
-    CHECK(work->splats ==
-          std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
-                          [](std::uint64_t sum, const LoadedPart& part) { return sum + part.splats; }));
+    std::uint64_t splats = 0;
+    for (const LoadedPart& part : parts) { splats += part.splats; }
+    CHECK(work->splats == splats);
     CHECK(work->seconds > 0.0);
 }
 
