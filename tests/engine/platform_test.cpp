@@ -72,42 +72,6 @@ TEST_CASE_FIXTURE(AtWork, "a file or a folder is made only where nothing is, and
     CHECK(createFolder(work.path / "nowhere", "mine-").empty());
 }
 
-TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
-    const Patience patience;
-    const Workplace work;
-    work.write("file", "abc");
-    fs::create_symlink(work.path / "file", work.path / "link");
-    makePipe(work.path / "pipe");
-    const auto reasonFor = [](const fs::path& path) {
-        std::string reason;
-        return openRegularFile(path, reason) != nullptr ? "opened" : reason;
-    };
-    CHECK(these(reasonFor(work.path / "file"), reasonFor(work.path / "link"), reasonFor(work.path / "pipe"),
-                reasonFor("/dev/zero")) ==
-          these("opened", "opened", "not a regular file", "not a regular file"));
-    CHECK(
-        these(reasonFor(work.path), reasonFor(work.path / "none"), reasonFor(work.path / "file" / "below")) ==
-        these("is a directory", "No such file or directory", "Not a directory"));
-}
-
-TEST_CASE_FIXTURE(AtWork, "a file is read from anywhere, and its stamp tells when it was written to") {
-    work.write("file", "0123456789");
-    std::string reason;
-    const File file = openRegularFile(work.path / "file", reason);
-    REQUIRE(file != nullptr);
-    const auto stamp = stampOf(file.get());
-    REQUIRE(stamp.has_value());
-    CHECK(stamp->size_bytes == 10);
-    CHECK(stampOf(file.get()) == stamp);
-    std::array<char, 4> read{};
-    CHECK(readAt(file.get(), 3, std::as_writable_bytes(std::span(read))) == 4u);
-    CHECK(these(std::string(read.data(), 4), std::fgetc(file.get())) == these("3456", '0'));
-    CHECK(readAt(file.get(), 8, std::as_writable_bytes(std::span(read))) == 2u);
-    CHECK(readAt(file.get(), 10, std::as_writable_bytes(std::span(read))) == 0u);
-    std::ofstream(work.path / "file", std::ios::app) << "more";
-    CHECK(stampOf(file.get()) != stamp);
-}
-
 TEST_CASE_FIXTURE(
     AtWork,
     "a scene that is written does not go through a link that waits where its unfinished file will be") {
@@ -161,6 +125,7 @@ TEST_CASE(
     const Workplace work;
     makePipe(work.path / "pipe");
     fs::create_directory(work.path / "folder");
+    fs::create_symlink("/dev/zero", work.path / "device");
     work.write("long", "");
     fs::resize_file(work.path / "long", std::uintmax_t{100} << 20);
     using Reader = void (*)(const fs::path&);
@@ -170,7 +135,9 @@ TEST_CASE(
           {[](const fs::path& path) { (void)readCameraFile(path, glm::dvec3(0.0)); }, 16},
           {[](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, 16}}) {
         for (const auto& [name, reason] : {std::pair<const char*, std::string>("pipe", "not a regular file"),
+                                           {"device", "not a regular file"},
                                            {"folder", "is a directory"},
+                                           {"long/below", "Not a directory"},
                                            {"long", fmt::format("longer than {} MiB", most)},
                                            {"none", "No such file or directory"}}) {
             const fs::path path = work.path / name;

@@ -38,21 +38,6 @@ TEST_CASE_FIXTURE(InFolder, "a PLY's numbers arrive activated, in every encoding
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "f_rest is channel-major in the file and coefficient-major in the scene") {
-    for (const int degree : {1, 2, 3}) {
-        const int per_channel = shCoefficientCount(degree) - 1;
-        const Scene scene = loadScene(folder.write("sh.ply", makePly(3 * per_channel).bytes()));
-        REQUIRE(scene.sh_degree == degree);
-        for (int channel = 0; channel < 3; ++channel) {
-            for (int k = 1; k <= per_channel; ++k) {
-                const std::size_t at =
-                    static_cast<std::size_t>((1 * shCoefficientCount(degree) + k) * 3 + channel);
-                CHECK(scene.sh[at] == static_cast<float>(100 + channel * per_channel + k - 1));
-            }
-        }
-    }
-}
-
 TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a band below is used late") {
     PlyText ply = makePly(45);
     for (int i = 0; i < 45; ++i) { setAll(ply, fmt::format("f_rest_{}", i), 0.0); }
