@@ -19,24 +19,19 @@ struct CompressedPly {
         const std::size_t chunks = (splats + 255) / 256;
         PlyText ply;
         ply.header_before = fmt::format("element chunk {}\n", chunks);
-        for (const std::string part : {"", "scale_", "colour"}) {
-            if (part == "colour" && !has_colour_bounds) { continue; }
+        for (const auto& [before, axes] : {std::pair("", "xyz"), {"scale_", "xyz"}, {"", "rgb"}}) {
+            if (*axes == 'r' && !has_colour_bounds) { continue; }
             for (const char* end : {"min", "max"}) {
-                for (const std::string axis : {"x", "y", "z"}) {
-                    const std::string name = part != "colour" ? part + axis
-                                             : axis == "x"    ? "r"
-                                             : axis == "y"    ? "g"
-                                                              : "b";
-                    ply.header_before += fmt::format("property float {}_{}\n", end, name);
+                for (int axis = 0; axis < 3; ++axis) {
+                    ply.header_before += fmt::format("property float {}_{}{}\n", end, before, axes[axis]);
                 }
             }
         }
         for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
             const double x = static_cast<double>(chunk);
-            const double bounds[] = {x, -2, 4, x + 1, 2, 8, -6, -5, -4, -2, -1, 0, -0.5, 0, 0, 1.5, 1, 2};
-            for (int i = 0; i < (has_colour_bounds ? 18 : 12); ++i) {
-                appendTyped(ply.data_before, "float", bounds[i], Encoding::kLittle);
-            }
+            std::vector<double> bounds{x, -2, 4, x + 1, 2, 8, -6, -5, -4, -2, -1, 0, -0.5, 0, 0, 1.5, 1, 2};
+            bounds.resize(has_colour_bounds ? 18 : 12);
+            appendLittle(ply.data_before, "float", bounds);
         }
         for (const auto& [name, word] :
              {std::pair("packed_position", position), std::pair("packed_rotation", rotation),
@@ -69,7 +64,7 @@ inline std::string splatRow(const glm::vec3& position, const glm::vec3& scale,
                             const std::array<int, 8>& colour_and_rotation) {
     std::string row;
     for (const glm::vec3& values : {position, scale}) {
-        for (int axis = 0; axis < 3; ++axis) { appendTyped(row, "float", values[axis], Encoding::kLittle); }
+        appendLittle(row, "float", {values.x, values.y, values.z});
     }
     return row.append(colour_and_rotation.begin(), colour_and_rotation.end());
 }

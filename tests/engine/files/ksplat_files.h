@@ -28,7 +28,7 @@ struct KsplatText {
         std::string header(4096, '\0'), headers, data;
         const auto set = [](std::string& text, std::size_t at, const char* type, double value) {
             std::string raw;
-            appendTyped(raw, type, value, Encoding::kLittle);
+            appendLittle(raw, type, {value});
             text.replace(at, raw.size(), raw);
         };
         const auto sections = static_cast<double>(degrees.size());
@@ -52,15 +52,15 @@ struct KsplatText {
 private:
     [[nodiscard]] std::string sectionData(int section) const {
         std::string data;
-        appendTyped(data, "uint", 1, Encoding::kLittle);  // splats in the last bucket
+        appendLittle(data, "uint", {1});  // splats in the last bucket
         for (int bucket = 0; bucket < 3; ++bucket) {
             for (int axis = 0; axis < 3; ++axis) {
-                appendTyped(data, "float", bucketCentre(section, bucket, axis), Encoding::kLittle);
+                appendLittle(data, "float", {bucketCentre(section, bucket, axis)});
             }
         }
         const auto number = [&](double value) {
-            if (level == 0) { return appendTyped(data, "float", value, Encoding::kLittle); }
-            appendTyped(data, "ushort", glm::packHalf1x16(static_cast<float>(value)), Encoding::kLittle);
+            if (level == 0) { return appendLittle(data, "float", {value}); }
+            appendLittle(data, "ushort", {static_cast<double>(glm::packHalf1x16(static_cast<float>(value)))});
         };
         for (int i = 0; i < kSplats; ++i) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -68,10 +68,8 @@ private:
                 if (level == 0) {
                     number(place);
                 } else {
-                    appendTyped(
-                        data, "ushort",
-                        std::round((place - bucketCentre(section, i / 2, axis)) * 32767.0 / 5.0) + 32767.0,
-                        Encoding::kLittle);
+                    const double steps = (place - bucketCentre(section, i / 2, axis)) * 32767.0 / 5.0;
+                    appendLittle(data, "ushort", {std::round(steps) + 32767.0});
                 }
             }
             for (int axis = 0; axis < 3; ++axis) { number(scale(i, axis)); }

@@ -68,6 +68,11 @@ inline void appendTyped(std::string& bytes, const std::string& type, double valu
     }
 }
 
+// In the little end's order, as most formats have numbers.
+inline void appendLittle(std::string& bytes, const std::string& type, const std::vector<double>& values) {
+    for (const double value : values) { appendTyped(bytes, type, value, Encoding::kLittle); }
+}
+
 // A PLY file as other programs would write it; `before` and `after` are additional elements (header lines and
 // data).
 struct PlyText {
