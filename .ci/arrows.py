@@ -2,7 +2,8 @@
 """Which room may include which: `.ci/arrows.py` lists violations, and exits with 1 if there are any.
 
 A room is a folder, including its subfolders that have no line of their own, or the files of one name. The rooms
-it sees are on its right and stand above it, so no two rooms see each other; tests see everything."""
+it sees are on its right and stand above it, so no two rooms see each other; tests see everything. Headers of a
+system are for platform_*.cpp, and for the simulated runtime, which shares nothing with the program."""
 
 import pathlib
 import re
@@ -57,6 +58,10 @@ ROOMS = {
     "app": "engine engine/* shaders app/*",
 }
 
+SYSTEM_HEADERS = re.compile(
+    r"^\s*#\s*include\s*<((?:sys|linux|netinet|arpa)/.*|(?:unistd|fcntl|signal|poll|spawn|dirent|dlfcn|pthread|pwd"
+    r"|termios|sched|pty|io|process|direct|[Ww]indows)\.h)>", re.MULTILINE)
+
 
 def room_of(path):
     fitting = [room for room in ROOMS if path.startswith((room + "/", room + "."))]
@@ -75,7 +80,10 @@ def main():
         room = room_of(path)
         if room is None or not pathlib.Path(path).exists():
             continue
-        for included in re.findall(r'^#include "([^"]+)"', pathlib.Path(path).read_text(), re.MULTILINE):
+        text = pathlib.Path(path).read_text()
+        if not room.startswith("xr/simulated") and not pathlib.Path(path).name.startswith("platform_"):
+            wrong += [f"{path}: only platform_*.cpp includes {header}" for header in SYSTEM_HEADERS.findall(text)]
+        for included in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE):
             other = room_of(included)
             if other is not None and other != room and not sees(room, other):
                 wrong.append(f"{path}: {room} does not see {other} ({included})")

@@ -16,7 +16,6 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <regex>
 
 SUITE(platform) {
 
@@ -232,29 +231,6 @@ TEST_CASE_FIXTURE(AtWork,
     CHECK(folderWith("", "XDG_PICTURES_DIR=\"$HOME/Bilder\"") == "");
     setEnvironment("HOME", home);
     setEnvironment("XDG_CONFIG_HOME", config);
-}
-
-TEST_CASE("nothing but platform_*.cpp includes a header of a system") {
-    const std::regex system_header(
-        R"(\s*#\s*include\s*<((sys|linux|netinet|arpa)/.*|unistd\.h|fcntl\.h|signal\.h|poll\.h|spawn\.h|dirent\.h|dlfcn\.h|)"
-        R"(pthread\.h|pwd\.h|termios\.h|sched\.h|pty\.h|io\.h|process\.h|direct\.h|[Ww]indows\.h)>.*)");
-    std::size_t files = 0;
-    for (const char* room : {"engine", "app", "xr"}) {
-        for (const auto& entry : fs::recursive_directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / room)) {
-            const fs::path& path = entry.path();
-            const bool source = path.extension() == ".h" || path.extension() == ".cpp";
-            // The simulated runtime shares nothing with the program.
-            const bool apart = path.string().find("xr/simulated/") != std::string::npos ||
-                               path.filename().string().starts_with("platform_");
-            if (!source || apart) { continue; }
-            ++files;
-            std::ifstream lines(path);
-            for (std::string line; std::getline(lines, line);) {
-                CHECK_MESSAGE(!std::regex_match(line, system_header), path.string() << ": " << line);
-            }
-        }
-    }
-    CHECK(files > 100);
 }
 
 }  // SUITE(platform)

@@ -151,21 +151,20 @@ private:
             if (got <= 0) { return std::nullopt; }
             bytes.append(block, static_cast<std::size_t>(got));
         }
-        const std::string head = bytes.substr(0, end + 2);
+        std::istringstream head(bytes.substr(0, end + 2));
         bytes.erase(0, end + 4);
         WebRequest request;
-        const std::size_t from = head.find(' ') + 1;
-        request.path = head.substr(from, head.find(' ', from) - from);
-        for (std::size_t line = head.find("\r\n") + 2; line < head.size();) {
-            const std::size_t stop = head.find("\r\n", line), colon = head.find(": ", line);
-            if (colon < stop) {
-                std::string name = head.substr(line, colon - line);
-                std::ranges::transform(name, name.begin(), [](unsigned char letter) {
-                    return static_cast<char>(std::tolower(letter));
-                });
-                request.headers[name] = head.substr(colon + 2, stop - colon - 2);
-            }
-            line = stop + 2;
+        std::string line, method;
+        head >> method >> request.path;
+        std::getline(head, line);
+        while (std::getline(head, line)) {
+            const std::size_t colon = line.find(": ");
+            if (colon == std::string::npos) { continue; }
+            std::string name = line.substr(0, colon);
+            std::ranges::transform(name, name.begin(), [](unsigned char letter) {
+                return static_cast<char>(std::tolower(letter));
+            });
+            request.headers[name] = line.substr(colon + 2, line.find('\r') - colon - 2);
         }
         return request;
     }
