@@ -1,28 +1,15 @@
 // Broken scene files of every format: each either loads into a complete scene or is refused in one line.
 #include "engine/files/sog.h"
 #include "tests/engine/files/gltf_files.h"
+#include "tests/engine/files/hostile_files.h"
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/engine/files/ksplat_files.h"
 #include "tests/engine/scene/scene_measures.h"
-#include "tests/hostile.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/files/streamed_scenes.h"
 #endif
 
 SUITE(hostile_scene) {
-
-// A good file, or a part of one, and how to break it.
-struct Target {
-    std::string name, good;
-    int changes = 1000;                  // bits are flipped this many times, and bytes are spliced as often
-    std::size_t numbers = 0, lines = 0;  // in this many bytes, numbers are replaced and lines shuffled
-    bool must_be_whole = true;           // it is refused whatever length it is cut to
-    std::function<std::string(const std::string&)> wrap = [](const std::string& bytes) { return bytes; };
-    // The file that is written, and the one that is then loaded.
-    std::string file = "broken", source = "broken";
-    std::size_t most_splats = 1000;
-    std::vector<std::string> more{};
-};
 
 Target partOf(Target target, std::size_t begin, std::size_t end = std::string::npos) {
     const std::string before = target.good.substr(0, begin),
@@ -33,47 +20,11 @@ Target partOf(Target target, std::size_t begin, std::size_t end = std::string::n
     return target;
 }
 
-void checkWhole(const Scene& scene, std::size_t most_splats) {
-    if (scene.size() > most_splats || !isSound(scene)) {
+void readWhole(const std::string& path, const Target& target) {
+    const Scene scene = loadScene(path);
+    if (scene.size() > target.most_splats || !isSound(scene)) {
         FAIL_CHECK("a scene with values that are not to be");
     }
-}
-
-// One in `stride` of the possible breaks is tried; more than one in `share` of all must be refused.
-void attack(const Folder& folder, const std::vector<Target>& targets, std::size_t stride, std::size_t share,
-            long most_mebibytes) {
-    std::size_t inputs = 0, refused = 0;
-    for (const Target& target : targets) {
-        (void)folder.write(target.file, target.wrap(target.good));
-        CHECK_MESSAGE(loadError(folder.file(target.source)).empty(), target.name);
-        // A folder, for tests/fuzz/run.sh --keep.
-        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {
-            std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary)
-                << target.wrap(target.good);
-        }
-        Tally tally;
-        // A long file is cut at fewer lengths.
-        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);
-        const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
-            if (count++ % step != 0) { return; }
-            (void)folder.write(target.file, target.wrap(bytes));
-            tally.attempt(target.name + ", " + what,
-                          [&] { checkWhole(loadScene(folder.file(target.source)), target.most_splats); });
-        };
-        truncate(target.good, attempt);
-        if (target.must_be_whole) { CHECK_MESSAGE(tally.read == 0, target.name); }
-        step = stride;
-        flipBits(target.good, target.changes, attempt);
-        spliceBytes(target.good, target.changes, attempt);
-        replaceNumbers(target.good, target.numbers, attempt);
-        shuffleLines(target.good, target.lines, attempt);
-        for (const std::string& bytes : target.more) { count = 0, attempt("one more", bytes); }
-        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", target.name, tally.inputs,
-                            tally.read, tally.refused));
-        inputs += tally.inputs, refused += tally.refused;
-    }
-    CHECK(refused > inputs / share);
-    CHECK(peakMebibytes() < most_mebibytes);
 }
 
 std::vector<Target> sceneTargets() {
@@ -145,9 +96,11 @@ std::vector<Target> sceneTargets() {
 constexpr std::size_t kFew = kSanitized ? 1 : 7;  // shares no divisor with the number of breaks of any kind
 
 TEST_CASE("broken files of every format but SOG, some of them") {
-    attack(Folder(), sceneTargets(), kFew, 4, 512);
+    attack(Folder(), sceneTargets(), kFew, 4, 512, readWhole);
 }
-TEST_CASE("broken files of every format but SOG" * nightly()) { attack(Folder(), sceneTargets(), 1, 4, 512); }
+TEST_CASE("broken files of every format but SOG" * nightly()) {
+    attack(Folder(), sceneTargets(), 1, 4, 512, readWhole);
+}
 
 #ifdef BINOSPLAT_SOG
 
@@ -237,7 +190,7 @@ std::vector<Target> sogTargets(const Folder& folder) {
 
 void attackSog(std::size_t stride) {
     const Folder folder;
-    attack(folder, sogTargets(folder), stride, 8, 768);
+    attack(folder, sogTargets(folder), stride, 8, 768, readWhole);
 }
 
 TEST_CASE("broken SOG scenes, some of them") { attackSog(kFew); }

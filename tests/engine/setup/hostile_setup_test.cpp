@@ -4,48 +4,28 @@
 #include "engine/setup/headset.h"
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
-#include "tests/hostile.h"
+#include "tests/engine/files/hostile_files.h"
 #include "tests/run_program.h"
 #include "xr/simulated/files/toml_guard.h"
 
 SUITE(hostile_setup) {
 
-struct TextAttempts {
-    std::string name;
-    std::function<void(const std::string& path)> read;
-    Workplace work;
-    Tally tally;
-
-    TextAttempts(std::string what, std::function<void(const std::string& path)> reader)
-        : name(std::move(what)), read(std::move(reader)) {}
-    ~TextAttempts() {
-        MESSAGE(fmt::format("{}: {} broken files, {} read, {} refused", name, tally.inputs, tally.read,
-                            tally.refused));
-        CHECK(tally.refused > tally.inputs / 8);
-        CHECK(peakMebibytes() < 512);
+// Texts of one kind, with `changes` times each kind of damage.
+void breakTexts(const std::string& name, const std::vector<std::string>& texts, int changes,
+                const std::function<void(const std::string& path)>& read,
+                const std::vector<std::string>& more = {}) {
+    std::vector<Target> targets;
+    for (const std::string& text : texts) {
+        targets.push_back({.name = name,
+                           .good = text,
+                           .changes = changes,
+                           .numbers = text.size(),
+                           .lines = text.size(),
+                           .must_be_whole = false,
+                           .more = more});
     }
-    TextAttempts(const TextAttempts&) = delete;
-    TextAttempts& operator=(const TextAttempts&) = delete;
-
-    void attempt(const std::string& what, const std::string& bytes) {
-        const std::string path = (work.path / "broken.toml").string();
-        // Some file systems wait for the disk when a file is truncated and rewritten.
-        std::filesystem::remove(path);
-        std::ofstream(path, std::ios::binary) << bytes;
-        tally.attempt(name + ", " + what, [&] { read(path); });
-    }
-    // All kinds of damage.
-    void run(const std::string& good, int changes) {
-        const Attempt one = [this](const std::string& what, const std::string& bytes) {
-            attempt(what, bytes);
-        };
-        truncate(good, one);
-        flipBits(good, changes, one);
-        spliceBytes(good, changes, one);
-        replaceNumbers(good, good.size(), one);
-        shuffleLines(good, good.size(), one);
-    }
-};
+    attack(Folder(), targets, 1, 8, 512, [&](const std::string& path, const Target&) { read(path); });
+}
 
 std::string textOf(const std::string& path) { return textIn(BINOSPLAT_SOURCE_DIR "/" + path); }
 
@@ -78,41 +58,37 @@ void readCameras(const std::string& path) {
     }
 }
 
-// `changes` times each kind of damage.
 void breakAll(int changes) {
-    TextAttempts settings("settings", readEverything);
     // Every key of the file gets a value: what is commented out cannot be damaged.
     std::string every_key = textOf("configs/default.toml").substr(0, 1500);
     for (std::size_t at = every_key.find("[camera]");
          (at = every_key.find("\n# ", at)) != std::string::npos;) {
         every_key.erase(at + 1, 2);
     }
-    settings.run(every_key, changes);
-    settings.run(
-        "[bench]\nscenes = [\"a\", \"b\"]\nrepeats = 3\n[[methods]]\nname = 'x'\nbudget = [0.1, "
-        "2e-1]\n[[views]]\nfov_x = 90\n"
-        "when = 1979-05-27\n",
-        changes);
-    TextAttempts headsets("headsets", [](const std::string& path) { (void)readHeadset(path); });
-    for (const char* headset : {"configs/headsets/quest3.toml", "configs/headsets/index.toml"}) {
-        headsets.run(textOf(headset), changes);
-    }
-    TextAttempts("cameras", readCameras)
-        .run(R"([{"id": 0, "img_name": "a", "width": 640, "height": 480, "position": [1, 2, -3.5],
+    breakTexts("settings",
+               {every_key.substr(0, every_key.rfind('\n') + 1),
+                "[bench]\nscenes = [\"a\", \"b\"]\nrepeats = 3\n[[methods]]\nname = 'x'\nbudget = [0.1, "
+                "2e-1]\n[[views]]\nfov_x = 90\n"
+                "when = 1979-05-27\n"},
+               changes, readEverything);
+    breakTexts("headsets", {textOf("configs/headsets/quest3.toml"), textOf("configs/headsets/index.toml")},
+               changes, [](const std::string& path) { (void)readHeadset(path); });
+    const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+    breakTexts(
+        "cameras", {R"([{"id": 0, "img_name": "a", "width": 640, "height": 480, "position": [1, 2, -3.5],
  "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "fx": 500, "fy": 501.5, "cx": 320, "cy": 240},
-{"img_name": "b", "width": 64, "height": 48, "position": [0, 0, 1e-3], "rotation": [[0, -1, 0], [1, 0, 0], [0, 0, 1]], "fx": 50, "fy": 50}])",
-             changes);
+{"img_name": "b", "width": 64, "height": 48, "position": [0, 0, 1e-3], "rotation": [[0, -1, 0], [1, 0, 0], [0, 0, 1]], "fx": 50, "fy": 50}])"},
+        changes, readCameras, {std::string(1'000'000, '['), "[" + deep + "]", R"([{"width":)" + deep + "}]"});
     for (const MotionAxes axes : {MotionAxes::kOpenXr, MotionAxes::kUnity}) {
         const auto read = [&](const std::string& path) {
             const HeadMotion motion = readHeadMotion(path, axes);
             const Pose pose = motion.poseAt(0.5 * motion.duration_s());
             CHECK(std::isfinite(pose.position.x + pose.position.y + pose.position.z));
         };
-        TextAttempts("head motion", read)
-            .run(
-                "time_ms,x,y,z,qx,qy,qz,qw\n0,0.1,1.5,-0.25,0,0,0,1\n# a remark\n"
-                "16.5,0.11,1.5,-0.25,0,0.0998,0,0.995\n33,0.12,1.5,-0.25,0,0.1,0,0.995\n",
-                changes);
+        breakTexts("head motion",
+                   {"time_ms,x,y,z,qx,qy,qz,qw\n0,0.1,1.5,-0.25,0,0,0,1\n# a remark\n"
+                    "16.5,0.11,1.5,-0.25,0,0.0998,0,0.995\n33,0.12,1.5,-0.25,0,0.1,0,0.995\n"},
+                   changes, read);
     }
 }
 
@@ -121,34 +97,27 @@ TEST_CASE("broken settings, headsets, cameras and head motion are read or refuse
 TEST_CASE("and so are more of them" * nightly()) { breakAll(1000); }
 
 TEST_CASE("settings as deep as a file can be, or in strange letters, are read or refused") {
-    TextAttempts attempts("settings", readEverything);
-    attempts.attempt("deep arrays", "a = " + std::string(100'000, '['));
     std::string tables, dotted = "a";
     for (int i = 0; i < 100'000; ++i) { tables += "{a="; }
     for (int i = 0; i < 300'000; ++i) { dotted += ".a"; }
-    attempts.attempt("deep tables", "a = " + tables);
-    const auto around = [&](const std::string& what, const std::string& letter,
-                            std::initializer_list<const char*> texts) {
-        for (const char* text : texts) {
-            attempts.attempt(what, fmt::format(fmt::runtime(text), letter, letter));
-        }
+    std::vector<std::string> texts{"a = " + std::string(100'000, '['), "a = " + tables,
+                                   "a = \"\"\"\nb\n\"\"\"\n", "\"a\\nb\" = 1\n[c]\n[c.d]\n",
+                                   "[\"a\\nb\"]\nc = {d = 1}\n"};
+    const auto around = [&](const std::string& letter, std::initializer_list<const char*> with) {
+        for (const char* text : with) { texts.push_back(fmt::format(fmt::runtime(text), letter, letter)); }
     };
-    around("deep keys", dotted, {"{} = 1\n", "[{}]\nb = 1\n", "[[{}]]\nb = 1\n"});
+    around(dotted, {"{} = 1\n", "[{}]\nb = 1\n", "[[{}]]\nb = 1\n"});
     for (const char* letter : {"\u00a1", "\u03e2", "\u0499", "\u2000", "\u3000", "\ufeff", "\xff", "\xc3"}) {
-        around("not ASCII", letter,
-               {"a = {}\n", "{} = 1\n", "a = 1 {}\n", "a = [1, {}]\n", "a = \"{}\"\n", "# {}\n", "{}a = 1\n",
-                "a = '{}'{}\n"});
+        around(letter, {"a = {}\n", "{} = 1\n", "a = 1 {}\n", "a = [1, {}]\n", "a = \"{}\"\n", "# {}\n",
+                        "{}a = 1\n", "a = '{}'{}\n"});
     }
     // Quotes that toml++ does not take for quotes: more of a word that is already wrong.
     for (const char* letter : {"\u00e9", "\ufbd0", "\ufef7"}) {
-        around("letters that look like quotes", letter,
-               {"a = 2\"{}\"\n", "a = -2[\"{}\"]\n", "a = [--2[\"{}\"]]\n", "a = 2=\"{}\"\n",
-                "a = [\nb=\"{}\"]\n", "a = [-{{\"{}\"\n", "a = 2]\"{}\"\n", "a = [[\"x\"]-\"{}\"]\n",
-                "a = 2 [\"{}\"]\n", "a = \"\\\n\"{}\"\n"});
+        around(letter, {"a = 2\"{}\"\n", "a = -2[\"{}\"]\n", "a = [--2[\"{}\"]]\n", "a = 2=\"{}\"\n",
+                        "a = [\nb=\"{}\"]\n", "a = [-{{\"{}\"\n", "a = 2]\"{}\"\n", "a = [[\"x\"]-\"{}\"]\n",
+                        "a = 2 [\"{}\"]\n", "a = \"\\\n\"{}\"\n"});
     }
-    attempts.attempt("several lines", "a = \"\"\"\nb\n\"\"\"\n");
-    attempts.attempt("a line break in a key", "\"a\\nb\" = 1\n[c]\n[c.d]\n");
-    attempts.attempt("a line break in a table's name", "[\"a\\nb\"]\nc = {d = 1}\n");
+    breakTexts("settings", {"a = 1\n"}, 0, readEverything, texts);
 }
 
 TEST_CASE_FIXTURE(
@@ -170,14 +139,6 @@ TEST_CASE_FIXTURE(
           {"a = 1\nb = 2\"\u00e9\"\n", "letters.toml:2: quotes within a word"}}) {
         CHECK_THROWS_WITH_AS(read(text), doctest::Contains(message), Error);
     }
-}
-
-TEST_CASE("cameras as deep as a file can be are refused") {
-    TextAttempts attempts("cameras", readCameras);
-    const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
-    attempts.attempt("deeply nested", std::string(1'000'000, '['));
-    attempts.attempt("deeply nested and closed", "[" + deep + "]");
-    attempts.attempt("deeply nested in a camera", R"([{"width":)" + deep + "}]");
 }
 
 }  // SUITE(hostile_setup)
