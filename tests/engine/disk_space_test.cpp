@@ -18,28 +18,6 @@ TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
     }
 }
 
-TEST_CASE("a disk is looked at again after 16 MiB, and what others wrote meanwhile counts") {
-    constexpr std::uint64_t kMib = std::uint64_t{1} << 20;
-    std::vector<std::uint64_t> found{100 * kMib, 20 * kMib, 4 * kMib};
-    std::size_t looks = 0;
-    DiskSpace room("a folder", [&](const std::filesystem::path& folder) {
-        CHECK(folder == "a folder");
-        return found.at(looks++);
-    });
-    CHECK(room.bytes() == 100 * kMib);
-    CHECK(room.holds(0, 100 * kMib));
-    CHECK_FALSE(room.holds(0, 100 * kMib + 1));
-    CHECK(room.holds(16 * kMib - 1, 70 * kMib));
-    CHECK(looks == 1);
-    CHECK_FALSE(room.holds(16 * kMib, 21 * kMib));
-    CHECK(looks == 2);
-    CHECK(room.bytes() == 36 * kMib);
-    CHECK(room.holds(16 * kMib, 20 * kMib));
-    CHECK(room.holds(32 * kMib, 4 * kMib));
-    CHECK_FALSE(room.holds(36 * kMib, 1));
-    CHECK(looks == 3);
-}
-
 TEST_CASE(
     "a folder in memory has no more room than memory, one on a disk no more than that, and one that is not "
     "there none") {

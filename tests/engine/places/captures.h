@@ -97,10 +97,10 @@ private:
 
 // 6 by 5 metres and 2.8 high, with a table full of things in one corner and a cupboard.
 inline Maker room() {
-    Maker made;
-    made.box({-3, -2.8, 0}, {3, 0, 5});
-    made.box({1.2, -0.8, 3.2}, {2.4, 0, 4.2}, 2000.0);
-    return made.box({-2.9, -2.0, 1.0}, {-2.3, 0.0, 2.0});
+    return Maker()
+        .box({-3, -2.8, 0}, {3, 0, 5})
+        .box({1.2, -0.8, 3.2}, {2.4, 0, 4.2}, 2000.0)
+        .box({-2.9, -2.0, 1.0}, {-2.3, 0.0, 2.0});
 }
 
 inline Maker street() {
@@ -112,15 +112,10 @@ inline Maker street() {
 
 // A head on a pedestal, with nothing around it.
 inline Maker statue() {
-    Maker made;
-    made.ball({0.2, -1.9, 0.1}, 0.4, 6000);
-    return made.box({0.0, -1.5, -0.1}, {0.4, -0.1, 0.3}, 1000.0);
+    return Maker().ball({0.2, -1.9, 0.1}, 0.4, 6000).box({0.0, -1.5, -0.1}, {0.4, -0.1, 0.3}, 1000.0);
 }
 
-inline Maker statueOnGround() {
-    Maker made = statue();
-    return made.wall({-2.5, 0, -2.5}, {5, 0, 0}, {0, 0, 5}, 200.0);
-}
+inline Maker statueOnGround() { return statue().wall({-2.5, 0, -2.5}, {5, 0, 0}, {0, 0, 5}, 200.0); }
 
 // A crate of half a metre is not a room, although it has a floor, walls and a ceiling.
 inline Maker crate() { return Maker().box({-0.3, -0.5, -0.25}, {0.3, 0, 0.25}, 8000.0); }
@@ -141,10 +136,13 @@ inline Maker garden() {
 // A scan on a desk, from all sides: the object, a piece of the desk, and the room around it as a distant,
 // thin shell.
 inline Maker scannedToy() {
-    Maker made;
-    made.sized(0.003).ball({0, -0.12, 0}, 0.06, 20000).box({-0.04, -0.06, -0.04}, {0.04, 0, 0.04}, 400000.0);
-    made.wall({-0.3, 0, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, 20000.0);
-    return made.sized(0.1).ball({0, -1, 0}, 4.0, 6000);
+    return Maker()
+        .sized(0.003)
+        .ball({0, -0.12, 0}, 0.06, 20000)
+        .box({-0.04, -0.06, -0.04}, {0.04, 0, 0.04}, 400000.0)
+        .wall({-0.3, 0, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, 20000.0)
+        .sized(0.1)
+        .ball({0, -1, 0}, 4.0, 6000);
 }
 
 // Seen only from the front, as from a few photographs side by side: things on a table, and the wide wall
@@ -159,17 +157,16 @@ inline Maker facingForward() {
 
 // Three walls and a floor: the camera never entered the fourth part of the room.
 inline Maker openRoom() {
-    Maker made;
-    made.wall({-3, 0, 0}, {6, 0, 0}, {0, 0, 5})
+    return Maker()
+        .wall({-3, 0, 0}, {6, 0, 0}, {0, 0, 5})
         .wall({-3, -2.8, 5}, {6, 0, 0}, {0, 2.8, 0})
-        .wall({-3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
-    made.wall({3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
-    return made.box({-0.9, -0.8, 2.8}, {0.9, 0, 3.8}, 1500.0);
+        .wall({-3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5})
+        .wall({3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5})
+        .box({-0.9, -0.8, 2.8}, {0.9, 0, 3.8}, 1500.0);
 }
 
 inline Maker corridor() {
-    Maker made;
-    return made.box({-1, -2.5, -8}, {1, 0, 8}, 150.0).box({0.5, -1, 3}, {1, 0, 4}, 1500.0);
+    return Maker().box({-1, -2.5, -8}, {1, 0, 8}, 150.0).box({0.5, -1, 3}, {1, 0, 4}, 1500.0);
 }
 
 // From a drone: blocks of houses on level ground.
@@ -187,10 +184,11 @@ inline Maker town() {
 
 // A car of which only the outside is seen, in a yard of which only the ground is seen.
 inline Maker car() {
-    Maker made;
-    made.box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false)
-        .box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false);
-    return made.sized(0.06).wall({-6, 0, -6}, {12, 0, 0}, {0, 0, 12}, 60.0, 0.03);
+    return Maker()
+        .box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false)
+        .box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false)
+        .sized(0.06)
+        .wall({-6, 0, -6}, {12, 0, 0}, {0, 0, 12}, 60.0, 0.03);
 }
 
 // A wall with balconies, seen from the front.

@@ -46,8 +46,7 @@ TEST_CASE(
     checkTurned(scannedToy().scene(), false,
                 [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 0.15) < 0.02); });
     // Seen from above; z is up.
-    Maker drone = town();
-    CHECK(degreesBetween(judgeStandpoint(drone.turn(aboutAxis(0, -90.0)).scene()).view.up, {0, 0, 1}) < 2.0);
+    CHECK(degreesBetween(judgeStandpoint(town().turn(aboutAxis(0, -90.0)).scene()).view.up, {0, 0, 1}) < 2.0);
 }
 
 TEST_CASE("real things are seen upright, from outside, whichever axis of the file is up" *
@@ -72,8 +71,7 @@ TEST_CASE("a facade is no ground: a wall with a relief, seen from the front, sta
 TEST_CASE(
     "the axis that the file names as vertical is kept to; the floor says which way is up, or a format") {
     // On its own this would lie on its back.
-    Maker made = statueOnGround();
-    Scene scene = made.scene();
+    Scene scene = statueOnGround().scene();
     const auto upOf = [&](int vertical_axis, bool y_up) {
         scene.vertical_axis = vertical_axis;
         scene.y_up = y_up;
@@ -83,15 +81,13 @@ TEST_CASE(
     CHECK(degreesBetween(upOf(1, true), {0, 1, 0}) < 1.5);
     CHECK(degreesBetween(upOf(2, false), {0, 0, 1}) < 1.5);
     for (const double degrees : {90.0, -90.0}) {
-        Maker turned = statueOnGround();
-        scene = turned.turn(aboutAxis(0, degrees)).scene();
+        scene = statueOnGround().turn(aboutAxis(0, degrees)).scene();
         CHECK(degreesBetween(upOf(2, false), {0, 0, degrees > 0.0 ? -1 : 1}) < 1.5);
     }
 }
 
 TEST_CASE("one stands beneath nothing: the floor is on the other side of cameras that look every way") {
-    Maker made = town();
-    const Scene scene = made.turn(aboutAxis(0, 90.0)).scene();
+    const Scene scene = town().turn(aboutAxis(0, 90.0)).scene();
     const std::optional<glm::dvec3> up = upBeneath(scene, {0, 0, -80});
     REQUIRE(up);
     CHECK(degreesBetween(*up, {0, 0, -1}) < 2.0);
@@ -111,8 +107,8 @@ TEST_CASE(
         CHECK(beneath(car().scene(), {0, -8, 0}, their_up) < 2.0);
     }
     // In front of a facade with a street at its foot.
-    Maker facade = relief();
-    CHECK(beneath(facade.wall({-5, 0, -3}, {10, 0, 0}, {0, 0, 3}, 300.0).scene(), {0, -3, -8}, kUp) < 2.0);
+    const Scene facade = relief().wall({-5, 0, -3}, {10, 0, 0}, {0, 0, 3}, 300.0).scene();
+    CHECK(beneath(facade, {0, -3, -8}, kUp) < 2.0);
     // What the file says is believed.
     Scene scene = town().scene();
     scene.vertical_axis = 2;

@@ -146,9 +146,7 @@ TEST_CASE("an up that is given is kept") {
 
 TEST_CASE("an empty room is one by its size, and one whose units are no metres by what stands in it") {
     CHECK(isInside(judgeStandpoint(Maker().box({-3, -2.8, 0}, {3, 0, 5}).scene())));
-    Maker small = room();
-    small.turn({1, 0, 0, 0}, 0.1);
-    const Standpoint in_small = judgeStandpoint(small.scene());
+    const Standpoint in_small = judgeStandpoint(room().turn({1, 0, 0, 0}, 0.1).scene());
     CAPTURE(in_small.why);
     CHECK(isInside(in_small));
     CHECK(-in_small.view.eye.y == between(0.08, 0.22));
@@ -161,11 +159,10 @@ TEST_CASE(
     for (const double scale : {100.0, 1.0, 0.1, 0.001}) {
         CAPTURE(scale);
         const StandpointWish usual{60.0, 1.0 / scale, {}};
-        Maker large = room(), toy = scannedToy();
-        const Standpoint in_room = judgeStandpoint(large.turn({1, 0, 0, 0}, scale).scene(), usual);
+        const Standpoint in_room = judgeStandpoint(room().turn({1, 0, 0, 0}, scale).scene(), usual);
         CHECK(isInside(in_room));
         CHECK(-in_room.view.eye.y / scale == doctest::Approx(1.6).epsilon(0.06));
-        const Scene scene = toy.turn({1, 0, 0, 0}, scale).scene();
+        const Scene scene = scannedToy().turn({1, 0, 0, 0}, scale).scene();
         const Standpoint at_toy = judgeStandpoint(scene, usual);
         const double away = glm::distance(at_toy.view.eye, at_toy.view.look);
         CHECK_FALSE(isInside(at_toy));
@@ -228,10 +225,10 @@ TEST_CASE("what is solid is no room, and a huge splat at the head of the file mo
     }
     for (Maker (*const make)() : {statue, crate, scannedToy, room}) {
         const View before = judgeStandpoint(make().scene()).view;
-        Maker first = Maker().sized(300.0).ball({0.1, -0.3, 0.1}, 0.0, 1);
+        const Scene huge = Maker().sized(300.0).ball({0.1, -0.3, 0.1}, 0.0, 1).scene();
         Scene scene = make().scene();
-        scene.positions.front() = first.scene().positions.front();
-        scene.scales.front() = first.scene().scales.front();
+        scene.positions.front() = huge.positions.front();
+        scene.scales.front() = huge.scales.front();
         CHECK(glm::distance(judgeStandpoint(scene).view.eye, before.eye) <
               0.05 * glm::distance(before.eye, before.look));
     }
