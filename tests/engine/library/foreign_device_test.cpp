@@ -329,7 +329,7 @@ TEST_CASE(
 TEST_CASE("a device without what is needed is refused by its name, and so is a target that makes no sense") {
     {
         ForeignProgram lacking(false);
-        checkRefused([&] { (void)lacking.open(); }, BSP_ERROR_NO_DEVICE,
+        checkRefusal([&] { (void)lacking.open(); }, BSP_ERROR_NO_DEVICE,
                      "bufferDeviceAddress and scalarBlockLayout");
     }
     ForeignProgram program;

@@ -179,7 +179,7 @@ TEST_CASE_FIXTURE(
     const bsp::Scene discs = load(colourful(10, 5, 0, false)), gaussians = load(colourful(10, 6, 0, true));
     const auto refused = [&](bsp_frame_info frame, const std::vector<bsp_instance>& instances,
                              const std::string& part) {
-        checkRefused([&] { (void)draw(*renderer, frame, viewsAt(), instances); }, BSP_ERROR_INPUT, part);
+        checkRefusal([&] { (void)draw(*renderer, frame, viewsAt(), instances); }, BSP_ERROR_INPUT, part);
     };
     const bsp_frame_info frame = frameOf(BSP_MODE_SHARED);
     refused(frame, {instanceOf(discs), instanceOf(gaussians)}, "all discs, all Gaussians");

@@ -45,7 +45,7 @@ struct Opened : Workplace {
     std::optional<bsp::Renderer> renderer;
 };
 
-inline void checkRefused(const std::function<void()>& action, bsp_result code, const std::string& part) {
+inline void checkRefusal(const std::function<void()>& action, bsp_result code, const std::string& part) {
     try {
         action();
         FAIL_CHECK("nothing was refused: " << part);

@@ -154,28 +154,28 @@ TEST_CASE_FIXTURE(Opened,
 
 TEST_CASE_FIXTURE(Opened,
                   "what is wrong is a code and a line, each thread has its own, and the next call works") {
-    checkRefused([&] { (void)load("nothing.ply"); }, BSP_ERROR_INPUT, "nothing.ply");
+    checkRefusal([&] { (void)load("nothing.ply"); }, BSP_ERROR_INPUT, "nothing.ply");
     std::thread([] { CHECK(std::string(bsp_error_text()).empty()); }).join();
     bsp::Views views = load("builtin:fence").startViews(0.063, 1.2, 64, 48);
-    checkRefused([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
+    checkRefusal([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
     {
         const bsp::Scene scene = load("builtin:fence");
         bsp_frame_info frame = bsp::frame();
-        checkRefused([&] { renderer->render(frame); }, BSP_ERROR_INPUT, "there are 0 views");
+        checkRefusal([&] { renderer->render(frame); }, BSP_ERROR_INPUT, "there are 0 views");
         frame.budget = 2.0;
-        checkRefused([&] { renderer->render(scene, views, frame); }, BSP_ERROR_INPUT, "budget is 2");
+        checkRefusal([&] { renderer->render(scene, views, frame); }, BSP_ERROR_INPUT, "budget is 2");
         const bsp::Views square = scene.startViews(0.063, 1.2, 48, 48);
-        checkRefused(
+        checkRefusal(
             [&] {
                 renderer->render(scene, {views[0], square[0]});
             },
             BSP_ERROR_INPUT, "different sizes");
         renderer->render(scene, views);
-        checkRefused([&] { (void)renderer->depth(views[0], 0); }, BSP_ERROR_INPUT, "BSP_FRAME_DEPTH");
+        checkRefusal([&] { (void)renderer->depth(views[0], 0); }, BSP_ERROR_INPUT, "BSP_FRAME_DEPTH");
         CHECK(renderer->colour(views[0], 0).values.at(3) >= 0.0f);
     }
     // The scene that was shown is gone, and its picture with it.
-    checkRefused([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
+    checkRefusal([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
     bsp_frame_info empty = bsp::frame();
     empty.views = views.data();
     empty.view_count = 2;
@@ -185,13 +185,13 @@ TEST_CASE_FIXTURE(Opened,
 
     bsp::Scene atelier(*device, "builtin:atelier");
     atelier.cancel();
-    checkRefused([&] { atelier.wait(); }, BSP_ERROR_CANCELLED, "cancelled");
+    checkRefusal([&] { atelier.wait(); }, BSP_ERROR_CANCELLED, "cancelled");
     auto none = bsp::make<bsp_splats>(BSP_TYPE_SPLATS);
     none.count = 1;
     none.scale_count = 4;
-    checkRefused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "4 scales");
+    checkRefusal([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "4 scales");
     none.scale_count = 3;
-    checkRefused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "positions of splats are null");
+    checkRefusal([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "positions of splats are null");
 }
 
 // The output of a script in tests/, run with Debian's numpy; none if that is not installed, or cannot load a
