@@ -1,11 +1,8 @@
-// Counting down.
-#include "tests/faults/any.h"
-
-#include "tests/faults/live.h"
+// Makes any device call fail, chosen by its number, for a process that tests itself, through the functions at
+// the end (dlsym). Needs BINOSPLAT_FAULT_ANY=1 when the device is created.
+#include "tests/faults/parts.h"
 
 #include <atomic>
-#include <cstdlib>
-#include <string_view>
 
 namespace binosplat::faults {
 namespace {
@@ -13,33 +10,22 @@ namespace {
 std::atomic<int> g_left{0}, g_result{0};
 std::atomic<const char*> g_struck{nullptr};
 
-template <auto kFunction>
-struct Fallible;
-template <typename... Arguments, VkResult(VKAPI_PTR* kFunction)(Arguments...)>
-struct Fallible<kFunction> {
-    static VKAPI_ATTR VkResult VKAPI_CALL call(Arguments... arguments) {
-        if (g_left > 0 && --g_left == 0) {
-            g_struck = its_name;
-            return static_cast<VkResult>(g_result.load());
-        }
-        return reinterpret_cast<decltype(kFunction)>(next)(arguments...);
+struct Fallible {
+    template <typename Call, typename... Arguments>
+    static VkResult run(const char* name, const Call& call, Arguments...) {
+        if (g_left <= 0 || --g_left != 0) { return call(); }
+        g_struck = name;
+        return static_cast<VkResult>(g_result.load());
     }
-    static PFN_vkVoidFunction before(const char* name, PFN_vkVoidFunction its_next) {
-        its_name = name;
-        next = its_next;
-        return asVoid(call);
-    }
-    static inline const char* its_name = nullptr;
-    static inline PFN_vkVoidFunction next = nullptr;
 };
 
 }  // namespace
 
-PFN_vkVoidFunction fallible(const char* name, PFN_vkVoidFunction next) {
+PFN_vkVoidFunction fallible(std::string_view name, PFN_vkVoidFunction next) {
     static const bool is_wanted = std::getenv("BINOSPLAT_FAULT_ANY") != nullptr;
-    if (!is_wanted || next == nullptr) { return next; }
+    if (!is_wanted) { return next; }
 #define BINOSPLAT_FALLIBLE(function) \
-    if (std::string_view(name) == #function) { return Fallible<&function>::before(#function, next); }
+    if (name == #function) { return Wrapped<&function, Fallible>::around(#function, next); }
     BINOSPLAT_FALLIBLE(vkAllocateCommandBuffers)
     BINOSPLAT_FALLIBLE(vkAllocateMemory)
     BINOSPLAT_FALLIBLE(vkBeginCommandBuffer)
@@ -60,14 +46,15 @@ PFN_vkVoidFunction fallible(const char* name, PFN_vkVoidFunction next) {
 
 }  // namespace binosplat::faults
 
-#define BINOSPLAT_SEEN __attribute__((visibility("default")))
+#define BINOSPLAT_SEEN extern "C" __attribute__((visibility("default")))
 
+// Makes the Nth such call from now on fail once with this VkResult; with 0, none.
 BINOSPLAT_SEEN void binosplat_faults_arm(int number, int result) {
     binosplat::faults::g_struck = nullptr;
     binosplat::faults::g_result = result;
     binosplat::faults::g_left = number;
 }
-
+// The name of the call that has failed since then; null if there were fewer calls.
 BINOSPLAT_SEEN const char* binosplat_faults_struck() { return binosplat::faults::g_struck; }
-
+// The number of objects and allocations that exist; see live.cpp.
 BINOSPLAT_SEEN long long binosplat_faults_live() { return binosplat::faults::liveObjects(); }

@@ -8,19 +8,16 @@
 // BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence:
 // "submit 55d0", "wait 55d0"; "wait all" for a wait for the queue or the device.
-// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
-// BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
+// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.cpp.
+// BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.cpp.
 // BINOSPLAT_FAULT_WAITS=FILE: work in frames that could wait, see waits.h.
-// BINOSPLAT_FAULT_ANY=1: any call may fail, see any.h.
-#include "tests/faults/any.h"
-#include "tests/faults/live.h"
-#include "tests/faults/load.h"
+// BINOSPLAT_FAULT_ANY=1: any call may fail, see any.cpp.
+#include "tests/faults/parts.h"
 #include "tests/faults/waits.h"
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
-#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -69,23 +66,16 @@ VkResult strike(const char* call) {
     if (plan.call != call) { return VK_SUCCESS; }
     const int number = ++calls;
     if (number < plan.number) { return VK_SUCCESS; }
-    if (plan.fault == "lost") {
-        g_is_lost = true;
-        return VK_ERROR_DEVICE_LOST;
-    }
-    if (plan.fault == "no-device-memory-once") {
-        return number == plan.number ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS;
-    }
-    if (plan.fault == "surface-lost-once") {
-        return number == plan.number ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
-    }
-    if (plan.fault == "surface-lost") { return VK_ERROR_SURFACE_LOST_KHR; }
-    if (plan.fault == "no-device-memory" || plan.fault == "type-full") {
-        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
-    if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }
-    if (number == plan.number) { (void)std::raise(plan.fault == "SIGTERM" ? SIGTERM : SIGINT); }
-    return VK_SUCCESS;
+    const bool is_once = plan.fault.ends_with("-once") || plan.fault.starts_with("SIG");
+    if (is_once && number > plan.number) { return VK_SUCCESS; }
+    const auto is = [&](const char* fault) { return plan.fault.starts_with(fault); };
+    if (is("SIG")) { (void)std::raise(is("SIGTERM") ? SIGTERM : SIGINT); }
+    g_is_lost = g_is_lost || is("lost");
+    return is("lost")                                  ? VK_ERROR_DEVICE_LOST
+           : is("surface-lost")                        ? VK_ERROR_SURFACE_LOST_KHR
+           : is("no-device-memory") || is("type-full") ? VK_ERROR_OUT_OF_DEVICE_MEMORY
+           : is("no-host-memory")                      ? VK_ERROR_OUT_OF_HOST_MEMORY
+                                                       : VK_SUCCESS;
 }
 
 std::FILE* traceFile() {
@@ -128,21 +118,15 @@ VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const 
     return result != VK_SUCCESS ? result : waited;
 }
 
-void traceWaitForAll() {
-    if (std::FILE* const file = traceFile(); file != nullptr) { std::fprintf(file, "wait all\n"); }
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL waitForDevice(VkDevice device) {
-    traceWaitForAll();
-    const VkResult waited = BINOSPLAT_NEXT(vkDeviceWaitIdle)(device);
-    return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL waitForQueue(VkQueue queue) {
-    traceWaitForAll();
-    const VkResult waited = BINOSPLAT_NEXT(vkQueueWaitIdle)(queue);
-    return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
-}
+// For the queue or the device.
+struct WaitsForAll {
+    template <typename Call, typename Handle>
+    static VkResult run(const char* /*label*/, const Call& call, Handle) {
+        if (std::FILE* const file = traceFile(); file != nullptr) { std::fprintf(file, "wait all\n"); }
+        const VkResult waited = call();
+        return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
+    }
+};
 
 bool addsType() { return thePlan().fault == "type-full"; }
 
@@ -233,50 +217,42 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(
         instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device, &properties);
     faults::beginLoad(static_cast<double>(properties.limits.timestampPeriod));
-    for (const faults::WatchedCall& watched : faults::watchedCalls()) {
-        *watched.next = nullptr;
-        *watched.next = getDeviceProcAddr(*device, watched.name.data());
-    }
     return VK_SUCCESS;
 }
 
-PFN_vkVoidFunction ownFunction(const char* name) {
-    if (const PFN_vkVoidFunction watched = faults::watchedFunction(name); watched != nullptr) {
-        return watched;
-    }
-    if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
-    if (std::strcmp(name, "vkQueuePresentKHR") == 0 && faults::the_device != VK_NULL_HANDLE &&
-        BINOSPLAT_NEXT(vkQueuePresentKHR) != nullptr) {
-        return asVoid(present);
-    }
-    if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }
-    if (std::strcmp(name, "vkDeviceWaitIdle") == 0) { return asVoid(waitForDevice); }
-    if (std::strcmp(name, "vkQueueWaitIdle") == 0) { return asVoid(waitForQueue); }
-    if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
-    if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
-    if (addsType() && std::strcmp(name, "vkGetBufferMemoryRequirements") == 0) {
-        return asVoid(requirements);
-    }
-    if (addsType() && std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties") == 0) {
-        return asVoid(memoryProperties);
-    }
-    if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
-    const PFN_vkVoidFunction load = faults::loadFunction(name);
-    return load != nullptr ? load : faults::countingFunction(name);
+// Null if it is left to the next layer. `next`: what that has.
+PFN_vkVoidFunction ownFunction(const char* text, PFN_vkVoidFunction next) {
+    const std::string_view name = text;
+    if (name == "vkCreateInstance") { return asVoid(createInstance); }
+    if (name == "vkCreateDevice") { return asVoid(createDevice); }
+    if (name == "vkGetInstanceProcAddr") { return asVoid(getInstanceProcAddr); }
+    if (name == "vkGetDeviceProcAddr") { return asVoid(getDeviceProcAddr); }
+    if (name == "vkQueueSubmit") { return asVoid(submit); }
+    if (name == "vkQueuePresentKHR" && next != nullptr) { return asVoid(present); }
+    if (name == "vkWaitForFences") { return asVoid(wait); }
+    if (name == "vkAllocateMemory") { return asVoid(allocate); }
+    if (name == "vkGetQueryPoolResults") { return asVoid(results); }
+    if (addsType() && name == "vkGetBufferMemoryRequirements") { return asVoid(requirements); }
+    if (addsType() && name == "vkGetPhysicalDeviceMemoryProperties") { return asVoid(memoryProperties); }
+    return faults::loadFunction(text);
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
-    const PFN_vkVoidFunction own = ownFunction(name);
-    return faults::fallible(name, own != nullptr ? own : faults::device_next(device, name));
+    const PFN_vkVoidFunction next = faults::device_next(device, name), own = ownFunction(name, next);
+    PFN_vkVoidFunction function = own != nullptr ? own : next;
+    if (function == nullptr) { return nullptr; }
+    if (std::strcmp(name, "vkDeviceWaitIdle") == 0) {
+        function = faults::Wrapped<&vkDeviceWaitIdle, WaitsForAll>::around("device", next);
+    } else if (std::strcmp(name, "vkQueueWaitIdle") == 0) {
+        function = faults::Wrapped<&vkQueueWaitIdle, WaitsForAll>::around("queue", next);
+    }
+    return faults::fallible(name, faults::watched(name, faults::counted(name, function)));
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {
-    if (std::strcmp(name, "vkCreateInstance") == 0) { return asVoid(createInstance); }
-    if (std::strcmp(name, "vkCreateDevice") == 0) { return asVoid(createDevice); }
-    if (std::strcmp(name, "vkGetInstanceProcAddr") == 0) { return asVoid(getInstanceProcAddr); }
-    const PFN_vkVoidFunction own = ownFunction(name);
-    if (own != nullptr) { return own; }
-    return instance != VK_NULL_HANDLE ? g_instance_next(instance, name) : nullptr;
+    const PFN_vkVoidFunction next = instance != VK_NULL_HANDLE ? g_instance_next(instance, name) : nullptr,
+                             own = ownFunction(name, next);
+    return own != nullptr ? own : next;
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
-// Counting.
-#include "tests/faults/live.h"
+// What is alive on a device: objects, device memory and the host's heap, counted while a program runs.
+// BINOSPLAT_FAULT_LIVE=FILE: a line for every tenth submission: "submissions objects device-bytes heap-bytes
+// resident-bytes kernels-made". The objects and the device's bytes are given as the minimum and maximum since
+// the line before: "10 120-140 5242880-6291456 1048576 3145728 24".
+// BINOSPLAT_FAULT_READ=FILE: how many bytes the program has read from files when it unloads the layer.
+#include "tests/faults/parts.h"
 
 #include <dlfcn.h>
 #include <malloc.h>
@@ -37,70 +41,56 @@ Bounds g_objects, g_bytes;
 std::map<VkDeviceMemory, VkDeviceSize> g_memory;
 std::uint64_t g_submissions = 0, g_kernels_made = 0;
 
-void count(std::int64_t more) {
-    const std::lock_guard lock(g_mutex);
-    g_objects.add(more);
-}
-
-// Calls that have one create info and make one object.
-#define BINOSPLAT_EACH_KIND(of)                                                                           \
-    of(Buffer) of(Image) of(ImageView) of(ShaderModule) of(PipelineLayout) of(CommandPool) of(Fence)      \
-        of(Semaphore) of(QueryPool) of(DescriptorPool) of(DescriptorSetLayout) of(Sampler) of(RenderPass) \
-            of(Framebuffer) of(PipelineCache)
-
-#define BINOSPLAT_COUNT_KIND(Kind)                                                                        \
-    VKAPI_ATTR VkResult VKAPI_CALL create##Kind(VkDevice device, const Vk##Kind##CreateInfo* info,        \
-                                                const VkAllocationCallbacks* callbacks, Vk##Kind* made) { \
-        const VkResult result = BINOSPLAT_NEXT(vkCreate##Kind)(device, info, callbacks, made);            \
-        if (result == VK_SUCCESS) { count(1); }                                                           \
-        return result;                                                                                    \
-    }                                                                                                     \
-    VKAPI_ATTR void VKAPI_CALL destroy##Kind(VkDevice device, Vk##Kind object,                            \
-                                             const VkAllocationCallbacks* callbacks) {                    \
-        if (object != VK_NULL_HANDLE) { count(-1); }                                                      \
-        BINOSPLAT_NEXT(vkDestroy##Kind)(device, object, callbacks);                                       \
+struct Makes {
+    template <typename Call, typename... Arguments>
+    static VkResult run(const char* /*label*/, const Call& call, Arguments...) {
+        return count(call(), 1);
     }
-BINOSPLAT_EACH_KIND(BINOSPLAT_COUNT_KIND)
-
-VKAPI_ATTR VkResult VKAPI_CALL createCompute(VkDevice device, VkPipelineCache cache, std::uint32_t many,
-                                             const VkComputePipelineCreateInfo* infos,
-                                             const VkAllocationCallbacks* callbacks, VkPipeline* made) {
-    const VkResult result =
-        BINOSPLAT_NEXT(vkCreateComputePipelines)(device, cache, many, infos, callbacks, made);
-    if (result != VK_SUCCESS) { return result; }
-    count(many);
-    const std::lock_guard lock(g_mutex);
-    g_kernels_made += many;
-    return result;
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL createGraphics(VkDevice device, VkPipelineCache cache, std::uint32_t many,
-                                              const VkGraphicsPipelineCreateInfo* infos,
-                                              const VkAllocationCallbacks* callbacks, VkPipeline* made) {
-    const VkResult result =
-        BINOSPLAT_NEXT(vkCreateGraphicsPipelines)(device, cache, many, infos, callbacks, made);
-    if (result == VK_SUCCESS) { count(many); }
-    return result;
-}
-
-VKAPI_ATTR void VKAPI_CALL destroyPipeline(VkDevice device, VkPipeline pipeline,
-                                           const VkAllocationCallbacks* callbacks) {
-    if (pipeline != VK_NULL_HANDLE) { count(-1); }
-    BINOSPLAT_NEXT(vkDestroyPipeline)(device, pipeline, callbacks);
-}
-
-VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory,
-                                      const VkAllocationCallbacks* callbacks) {
-    {
+    // Several pipelines.
+    template <typename Call, typename... Arguments>
+    static VkResult run(const char* label, const Call& call, VkDevice, VkPipelineCache, std::uint32_t many,
+                        Arguments...) {
+        const VkResult result = count(call(), many);
         const std::lock_guard lock(g_mutex);
-        if (const auto found = g_memory.find(memory); found != g_memory.end()) {
-            g_bytes.add(-static_cast<std::int64_t>(found->second));
-            g_objects.add(-1);
-            g_memory.erase(found);
-        }
+        g_kernels_made += result == VK_SUCCESS && std::string_view(label) == "kernels" ? many : 0;
+        return result;
     }
-    BINOSPLAT_NEXT(vkFreeMemory)(device, memory, callbacks);
-}
+
+private:
+    static VkResult count(VkResult result, std::uint32_t made) {
+        const std::lock_guard lock(g_mutex);
+        g_objects.add(result == VK_SUCCESS ? made : 0);
+        return result;
+    }
+};
+
+struct Ends {
+    template <typename Call, typename Object>
+    static void run(const char* /*label*/, const Call& call, VkDevice, Object object,
+                    const VkAllocationCallbacks*) {
+        {
+            const std::lock_guard lock(g_mutex);
+            g_objects.add(object != VK_NULL_HANDLE ? -1 : 0);
+        }
+        call();
+    }
+};
+
+struct Frees {
+    template <typename Call>
+    static void run(const char* /*label*/, const Call& call, VkDevice, VkDeviceMemory memory,
+                    const VkAllocationCallbacks*) {
+        {
+            const std::lock_guard lock(g_mutex);
+            if (const auto found = g_memory.find(memory); found != g_memory.end()) {
+                g_bytes.add(-static_cast<std::int64_t>(found->second));
+                g_objects.add(-1);
+                g_memory.erase(found);
+            }
+        }
+        call();
+    }
+};
 
 // The host's memory, counted by the sanitizer if there is one.
 std::uint64_t heapBytes() {
@@ -141,24 +131,37 @@ __attribute__((destructor)) void noteRead() {
 
 }  // namespace
 
-bool countsLive() { return output() != nullptr; }
-
-PFN_vkVoidFunction countingFunction(const char* name) {
-    if (!countsLive()) { return nullptr; }
-    static const std::map<std::string, PFN_vkVoidFunction> functions{
-#define BINOSPLAT_NAME_KIND(Kind) \
-    {"vkCreate" #Kind, asVoid(create##Kind)}, {"vkDestroy" #Kind, asVoid(destroy##Kind)},
-        BINOSPLAT_EACH_KIND(BINOSPLAT_NAME_KIND){"vkCreateComputePipelines", asVoid(createCompute)},
-        {"vkCreateGraphicsPipelines", asVoid(createGraphics)},
-        {"vkDestroyPipeline", asVoid(destroyPipeline)},
-        {"vkFreeMemory", asVoid(freeMemory)},
-    };
-    const auto found = functions.find(name);
-    return found == functions.end() ? nullptr : found->second;
+PFN_vkVoidFunction counted(std::string_view name, PFN_vkVoidFunction next) {
+    if (output() == nullptr) { return next; }
+#define BINOSPLAT_COUNTED(Kind)                                                                          \
+    if (name == "vkCreate" #Kind) { return Wrapped<&vkCreate##Kind, Makes>::around("an object", next); } \
+    if (name == "vkDestroy" #Kind) { return Wrapped<&vkDestroy##Kind, Ends>::around("an object", next); }
+    BINOSPLAT_COUNTED(Buffer)
+    BINOSPLAT_COUNTED(Image)
+    BINOSPLAT_COUNTED(ImageView)
+    BINOSPLAT_COUNTED(ShaderModule)
+    BINOSPLAT_COUNTED(PipelineLayout)
+    BINOSPLAT_COUNTED(CommandPool)
+    BINOSPLAT_COUNTED(Fence)
+    BINOSPLAT_COUNTED(Semaphore)
+    BINOSPLAT_COUNTED(QueryPool)
+    BINOSPLAT_COUNTED(DescriptorPool)
+    BINOSPLAT_COUNTED(DescriptorSetLayout)
+    BINOSPLAT_COUNTED(Sampler)
+    BINOSPLAT_COUNTED(RenderPass)
+    BINOSPLAT_COUNTED(Framebuffer)
+    BINOSPLAT_COUNTED(PipelineCache)
+#define BINOSPLAT_COUNTED_AS(function, Around, label) \
+    if (name == #function) { return Wrapped<&function, Around>::around(label, next); }
+    BINOSPLAT_COUNTED_AS(vkCreateComputePipelines, Makes, "kernels")
+    BINOSPLAT_COUNTED_AS(vkCreateGraphicsPipelines, Makes, "pipelines")
+    BINOSPLAT_COUNTED_AS(vkDestroyPipeline, Ends, "a pipeline")
+    BINOSPLAT_COUNTED_AS(vkFreeMemory, Frees, "memory")
+    return next;
 }
 
 void countMemory(VkDeviceMemory memory, VkDeviceSize bytes) {
-    if (!countsLive()) { return; }
+    if (output() == nullptr) { return; }
     const std::lock_guard lock(g_mutex);
     g_memory[memory] = bytes;
     g_bytes.add(static_cast<std::int64_t>(bytes));

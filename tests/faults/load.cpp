@@ -1,6 +1,8 @@
-// Watching what is recorded.
-#include "tests/faults/load.h"
-#include "tests/faults/live.h"
+// Frames that take as long as a test says, whatever they take on the device.
+// BINOSPLAT_FAULT_LOAD=FRAME:MS[,FRAME:MS...], with FRAME from 0: from that frame on, a frame with as many
+// pixels as the first one takes this long; fewer pixels take a proportional share. Anything with a pass
+// "present" is a frame.
+#include "tests/faults/parts.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -41,6 +43,8 @@ const std::map<std::uint64_t, double>& loads() {
     return all;
 }
 
+bool hasLoad() { return !loads().empty(); }
+
 VKAPI_ATTR void VKAPI_CALL resetQueryPool(VkCommandBuffer commands, VkQueryPool pool, std::uint32_t first,
                                           std::uint32_t count) {
     {
@@ -70,8 +74,6 @@ VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, s
 }
 
 }  // namespace
-
-bool hasLoad() { return !loads().empty(); }
 
 void beginLoad(double tick_ns) { g_tick_ns = tick_ns; }
 

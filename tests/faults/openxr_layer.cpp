@@ -60,6 +60,47 @@ std::map<std::string, Fault>& faults() {
 
 PFN_xrGetInstanceProcAddr g_next = nullptr;
 
+#define BINOSPLAT_FAULTY(item)                                                                             \
+    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT)                   \
+        item(xrEnumerateDisplayRefreshRatesFB) item(xrGetDisplayRefreshRateFB)                             \
+            item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace) \
+                item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain)    \
+                    item(xrWaitFrame) item(xrBeginFrame) item(xrAcquireSwapchainImage)                     \
+                        item(xrWaitSwapchainImage) item(xrReleaseSwapchainImage) item(xrEndFrame)          \
+                            item(xrGetSystemProperties) item(xrLocateViews) item(xrPollEvent)
+
+#define BINOSPLAT_TAG(name)                         \
+    struct Tag_##name {                             \
+        static constexpr const char* kName = #name; \
+    };
+BINOSPLAT_FAULTY(BINOSPLAT_TAG)
+
+// What becomes of a function's results.
+template <typename Tag, typename... Arguments>
+void change(Tag, XrResult, Arguments...) {}
+
+// How often the open frame's eyes were located.
+std::atomic<int> g_looks{0};
+
+void change(Tag_xrBeginFrame, XrResult, XrSession, const XrFrameBeginInfo*) { g_looks = 0; }
+
+void change(Tag_xrLocateViews, XrResult result, XrSession, const XrViewLocateInfo*, XrViewState*,
+            std::uint32_t capacity, std::uint32_t* count, XrView* views) {
+    const char* const early = std::getenv("BINOSPLAT_XR_EARLY");
+    if (early == nullptr || XR_FAILED(result) || capacity == 0 || g_looks++ != 0) { return; }
+    for (std::uint32_t i = 0; i < *count; ++i) { views[i].pose.position.y += std::strtof(early, nullptr); }
+}
+
+void change(Tag_xrPollEvent, XrResult result, XrInstance, XrEventDataBuffer* event) {
+    const char* const lose = std::getenv("BINOSPLAT_XR_LOSE");
+    if (lose == nullptr || result != XR_SUCCESS || event->type != std::atoi(lose)) { return; }
+    const char* const after = std::strchr(lose, ':');
+    static std::atomic<int> left{after != nullptr ? std::atoi(after + 1) : 0};
+    if (left-- > 0) { return; }
+    XrEventDataEventsLost lost{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, 1};
+    std::memcpy(event, &lost, sizeof lost);
+}
+
 // A function that fails as long as its fault lasts, and then calls the next one. `Tag` is a separate struct
 // for each function.
 template <typename Tag, typename Function>
@@ -70,7 +111,10 @@ struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
         const auto found = faults().find(Tag::kName);
         if (found == faults().end() || found->second.before > 0 || found->second.left <= 0) {
             if (found != faults().end()) { --found->second.before; }
-            return binosplat::faults::runInRuntime(Tag::kName, [&] { return next(arguments...); });
+            const XrResult result =
+                binosplat::faults::runInRuntime(Tag::kName, [&] { return next(arguments...); });
+            change(Tag{}, result, arguments...);
+            return result;
         }
         Fault& fault = found->second;
         if (fault.is_crash) { std::abort(); }
@@ -80,80 +124,6 @@ struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
     static inline XrResult(XRAPI_PTR* next)(Arguments...) = nullptr;
 };
 
-#define BINOSPLAT_FAULTY(item)                                                                             \
-    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT)                   \
-        item(xrEnumerateDisplayRefreshRatesFB) item(xrGetDisplayRefreshRateFB)                             \
-            item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace) \
-                item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain)    \
-                    item(xrWaitFrame) item(xrBeginFrame) item(xrAcquireSwapchainImage)                     \
-                        item(xrWaitSwapchainImage) item(xrReleaseSwapchainImage) item(xrEndFrame)          \
-                            item(xrGetSystemProperties)
-
-#define BINOSPLAT_TAG(name)                         \
-    struct Tag_##name {                             \
-        static constexpr const char* kName = #name; \
-    };
-BINOSPLAT_FAULTY(BINOSPLAT_TAG)
-
-// How often the open frame's eyes were located.
-std::atomic<int> g_looks{0};
-PFN_xrLocateViews g_locate_views = nullptr;
-PFN_xrBeginFrame g_begin_frame = nullptr;
-
-XRAPI_ATTR XrResult XRAPI_CALL locateViews(XrSession session, const XrViewLocateInfo* info,
-                                           XrViewState* state, std::uint32_t capacity, std::uint32_t* count,
-                                           XrView* views) {
-    const XrResult result = g_locate_views(session, info, state, capacity, count, views);
-    if (XR_FAILED(result) || capacity == 0 || g_looks++ != 0) { return result; }
-    for (std::uint32_t i = 0; i < *count; ++i) {
-        views[i].pose.position.y += std::strtof(std::getenv("BINOSPLAT_XR_EARLY"), nullptr);
-    }
-    return result;
-}
-
-XRAPI_ATTR XrResult XRAPI_CALL beginFrame(XrSession session, const XrFrameBeginInfo* info) {
-    g_looks = 0;
-    return g_begin_frame(session, info);
-}
-
-PFN_xrPollEvent g_poll_event = nullptr;
-
-XRAPI_ATTR XrResult XRAPI_CALL pollEvent(XrInstance instance, XrEventDataBuffer* event) {
-    const char* const lose = std::getenv("BINOSPLAT_XR_LOSE");
-    const char* const after = std::strchr(lose, ':');
-    static std::atomic<int> left{after != nullptr ? std::atoi(after + 1) : 0};
-    const XrResult result = g_poll_event(instance, event);
-    if (result != XR_SUCCESS || event->type != std::atoi(lose) || left-- > 0) { return result; }
-    XrEventDataEventsLost lost{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, 1};
-    std::memcpy(event, &lost, sizeof lost);
-    return result;
-}
-
-// Whether BINOSPLAT_XR_LOSE takes over the function.
-bool takesEvents(const char* name, PFN_xrVoidFunction* function) {
-    if (std::getenv("BINOSPLAT_XR_LOSE") == nullptr || std::strcmp(name, "xrPollEvent") != 0) {
-        return false;
-    }
-    g_poll_event = reinterpret_cast<PFN_xrPollEvent>(
-        std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(pollEvent)));
-    return true;
-}
-
-// Whether BINOSPLAT_XR_EARLY takes over the function.
-bool takesEarly(const char* name, PFN_xrVoidFunction* function) {
-    if (std::getenv("BINOSPLAT_XR_EARLY") == nullptr) { return false; }
-    if (std::strcmp(name, "xrLocateViews") == 0) {
-        g_locate_views = reinterpret_cast<PFN_xrLocateViews>(
-            std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(locateViews)));
-    } else if (std::strcmp(name, "xrBeginFrame") == 0) {
-        g_begin_frame = reinterpret_cast<PFN_xrBeginFrame>(
-            std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(beginFrame)));
-    } else {
-        return false;
-    }
-    return true;
-}
-
 XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const char* name,
                                                    PFN_xrVoidFunction* function) {
     const auto found = faults().find(name);
@@ -162,10 +132,7 @@ XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const ch
         return XR_ERROR_FUNCTION_UNSUPPORTED;
     }
     const XrResult result = g_next(instance, name, function);
-    if (XR_FAILED(result) || takesEarly(name, function) || takesEvents(name, function) ||
-        (found == faults().end() && binosplat::faults::waitsFile() == nullptr)) {
-        return result;
-    }
+    if (XR_FAILED(result)) { return result; }
 #define BINOSPLAT_WRAP(wrapped)                                          \
     if (std::strcmp(name, #wrapped) == 0) {                              \
         using Wrapped = Faulty<Tag_##wrapped, PFN_##wrapped>;            \

@@ -3,13 +3,13 @@
 // made: "7 memory 2 queue 1". A frame lasts from the xrEndFrame before it to its own, the first one from the
 // first xrWaitFrame. What a runtime does while one of its functions is called does not count. This takes both
 // layers, Vulkan's and OpenXR's. Without OpenXR's, a frame ends when a window is given a picture, and begins
-// with the one before. The kinds are those of `watchedCalls`, and waits for a fence, signalled or not, with a
+// with the one before. The kinds are those of `watched`, and waits for a fence, signalled or not, with a
 // timeout, if its work was submitted last in this frame ("fence-of-this-frame"), in the one before, so that
 // the device runs dry ("fence-of-last-frame"), or by another thread or nobody ("fence-of-others"). A frame
 // may wait for what its own thread submitted two frames ago.
 #pragma once
 
-#include "tests/faults/live.h"
+#include "tests/faults/parts.h"
 
 #include <vulkan/vulkan.h>
 
@@ -85,51 +85,31 @@ auto runInRuntime(std::string_view name, const Call& call) {
     return result;
 }
 
-// A device function that counts its calls, and then calls the next one.
-struct WatchedCall {
-    std::string_view name;
-    PFN_vkVoidFunction call;
-    PFN_vkVoidFunction* next;
-};
-template <auto kFunction>
-struct Watched;
-template <typename Result, typename... Arguments, Result(VKAPI_PTR* kFunction)(Arguments...)>
-struct Watched<kFunction> {
-    static WatchedCall as(const char* name, const char* its_kind) {
-        kind = its_kind;
-        return {name, reinterpret_cast<PFN_vkVoidFunction>(call), &next};
-    }
-    static VKAPI_ATTR Result VKAPI_CALL call(Arguments... arguments) {
+struct Watched {
+    template <typename Call, typename... Arguments>
+    static auto run(const char* kind, const Call& call, Arguments...) {
         countWait(kind);
-        return reinterpret_cast<decltype(kFunction)>(next)(arguments...);
+        return call();
     }
-    static inline const char* kind = nullptr;
-    static inline PFN_vkVoidFunction next = nullptr;
 };
 
-inline const auto& watchedCalls() {
-#define BINOSPLAT_WATCH(function, kind) Watched<&function>::as(#function, kind)
-    static const std::array calls{
-        BINOSPLAT_WATCH(vkQueueWaitIdle, "queue"),
-        BINOSPLAT_WATCH(vkDeviceWaitIdle, "device"),
-        BINOSPLAT_WATCH(vkAllocateMemory, "memory"),
-        BINOSPLAT_WATCH(vkCreateBuffer, "buffer"),
-        BINOSPLAT_WATCH(vkCreateImage, "image"),
-        BINOSPLAT_WATCH(vkCreateShaderModule, "shader-module"),
-        BINOSPLAT_WATCH(vkCreateComputePipelines, "pipeline"),
-        BINOSPLAT_WATCH(vkCreateGraphicsPipelines, "pipeline"),
-        BINOSPLAT_WATCH(vkCreateDescriptorPool, "descriptor-pool"),
-        BINOSPLAT_WATCH(vkAllocateDescriptorSets, "descriptor-set"),
-        BINOSPLAT_WATCH(vkCreateSwapchainKHR, "swapchain"),
-    };
-    return calls;
-}
-
-// The counting function of this name; null if it is not watched, or if there is no next one yet.
-inline PFN_vkVoidFunction watchedFunction(std::string_view name) {
-    const auto found = std::ranges::find(watchedCalls(), name, &WatchedCall::name);
-    return waitsFile() != nullptr && found != watchedCalls().end() && *found->next != nullptr ? found->call
-                                                                                              : nullptr;
+// The same function, of which calls are counted if it is watched.
+inline PFN_vkVoidFunction watched(std::string_view name, PFN_vkVoidFunction next) {
+    if (waitsFile() == nullptr) { return next; }
+#define BINOSPLAT_WATCH(function, kind) \
+    if (name == #function) { return Wrapped<&function, Watched>::around(kind, next); }
+    BINOSPLAT_WATCH(vkQueueWaitIdle, "queue")
+    BINOSPLAT_WATCH(vkDeviceWaitIdle, "device")
+    BINOSPLAT_WATCH(vkAllocateMemory, "memory")
+    BINOSPLAT_WATCH(vkCreateBuffer, "buffer")
+    BINOSPLAT_WATCH(vkCreateImage, "image")
+    BINOSPLAT_WATCH(vkCreateShaderModule, "shader-module")
+    BINOSPLAT_WATCH(vkCreateComputePipelines, "pipeline")
+    BINOSPLAT_WATCH(vkCreateGraphicsPipelines, "pipeline")
+    BINOSPLAT_WATCH(vkCreateDescriptorPool, "descriptor-pool")
+    BINOSPLAT_WATCH(vkAllocateDescriptorSets, "descriptor-set")
+    BINOSPLAT_WATCH(vkCreateSwapchainKHR, "swapchain")
+    return next;
 }
 
 }  // namespace binosplat::faults
