@@ -32,21 +32,6 @@ TEST_CASE("a frame is one line of JSON, whose numbers read back as they were") {
     CHECK(namePicture(1234567) == "frame_1234567.png");
 }
 
-TEST_CASE("what happens between frames has a line without a number") {
-    const Json states =
-        Json::parse(makeBetweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
-    CHECK(states == Json{{"session_state", "EXITING"},
-                         {"display_time_ns", 7},
-                         {"events", {"state IDLE", "state EXITING"}}});
-    const Json refused =
-        Json::parse(makeBetweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
-    CHECK_FALSE(refused.contains("frame"));
-    CHECK(refused == expecting(refused, {{"refused", "XR_ERROR_TIME_INVALID"},
-                                         {"reason", "the time is 0"},
-                                         {"should_render", true}}));
-    CHECK(refused["events"].empty());
-}
-
 TEST_CASE_FIXTURE(InFolder, "lines are there before the log is closed") {
     const std::filesystem::path path = folder.path / "log";
     {
