@@ -43,20 +43,6 @@ struct AutomationFixture : SessionFixture {
         XrEventDataBuffer event;
         return poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED;
     }
-    void switchTo(bool active, XrPath hand) const {
-        REQUIRE(setActive(session, path(kTouch), hand, active) == XR_SUCCESS);
-    }
-};
-
-// A space for the pose that is bound for both hands, without naming one.
-struct EitherHandFixture : AutomationFixture {
-    XrSpace space = makeActionSpace(grip);
-
-    std::string whoIsFollowed() const {
-        const XrSpaceLocation location = locate(space, local, frame().predictedDisplayTime);
-        if ((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0) { return "nobody"; }
-        return location.pose.position.x < 0 ? "left" : "right";
-    }
 };
 
 struct Gaze {
@@ -69,7 +55,7 @@ struct Gaze {
     double pitch() const { return angle(forward().y); }
 
 private:
-    static double angle(float sine) { return 180.0 / std::acos(-1.0) * std::asin(static_cast<double>(sine)); }
+    static double angle(float sine) { return 180.0 / std::numbers::pi * std::asin(sine); }
     XrVector3f forward() const {
         const XrQuaternionf& q = location.pose.orientation;
         return {-2 * (q.x * q.z + q.w * q.y), -2 * (q.y * q.z - q.w * q.x), -1 + 2 * (q.x * q.x + q.y * q.y)};
@@ -83,7 +69,7 @@ Extensions withGaze(Extensions extensions) {
 
 struct GazeFixture : SessionFixture {
     XrActionSet set = makeActionSet("looking");
-    XrAction look = makeAction(set, "look", XR_ACTION_TYPE_POSE_INPUT);
+    XrAction look = makeAction(set, "look", XR_ACTION_TYPE_POSE_INPUT, {path("/user/eyes_ext")});
     XrSpace gaze_space = XR_NULL_HANDLE;
     XrSpace view = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW);
 
@@ -101,11 +87,12 @@ struct GazeFixture : SessionFixture {
         return {pose(look).isActive == XR_TRUE, location, sample.time};
     }
     // After frames up to `until_s` of the script's time.
-    Gaze at(double until_s, XrSpace base = XR_NULL_HANDLE) {
+    Gaze at(double until_s) { return at(until_s, view); }
+    Gaze at(double until_s, XrSpace base) {
         XrTime time = 0;
         for (; frames_ <= std::lround(100 * until_s); ++frames_) { time = frame().predictedDisplayTime; }
         REQUIRE(XR_SUCCEEDED(sync(set)));
-        return read(time, base == XR_NULL_HANDLE ? view : base);
+        return read(time, base);
     }
 
 private:
@@ -113,12 +100,10 @@ private:
 };
 
 // The answer to whether the headset tracks eyes; 7 if there is none.
-XrBool32 supportsGaze(const std::string& script, const Extensions& extensions) {
-    const InstanceFixture made(kQuietScript + script, extensions);
+XrBool32 supportsGaze(const InstanceFixture& made) {
     XrSystemEyeGazeInteractionPropertiesEXT eyes{XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, nullptr,
                                                  7};
-    XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &eyes};
-    REQUIRE(xrGetSystemProperties(made.instance, made.system, &properties) == XR_SUCCESS);
+    made.systemProperties(&eyes);
     return eyes.supportsEyeGazeInteraction;
 }
 
@@ -183,12 +168,19 @@ TEST_CASE(
                                             {"", "", "right"},
                                             {"down", "left", "nobody"},
                                             {"", "", "right"}}}) {
-        const EitherHandFixture made;
+        const AutomationFixture made;
+        // For the pose that is bound for both hands, without naming one.
+        const XrSpace space = made.makeActionSpace(made.grip);
         for (const auto& [left, synchronized, followed] : steps) {
             INFO(left, " ", synchronized);
-            if (!left.empty()) { made.switchTo(left == "up", made.left); }
+            if (!left.empty()) {
+                CHECK(made.setActive(made.session, made.path(kTouch), made.left, left == "up") == XR_SUCCESS);
+            }
             made.synchronize(synchronized.empty() ? XR_NULL_PATH : made.path("/user/hand/" + synchronized));
-            CHECK(made.whoIsFollowed() == followed);
+            const XrSpaceLocation found = made.locate(space, made.local, made.frame().predictedDisplayTime);
+            CHECK(followed == ((found.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0 ? "nobody"
+                               : found.pose.position.x < 0                                       ? "left"
+                                                                                                 : "right"));
         }
     }
 }
@@ -197,38 +189,42 @@ TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profil
     synchronize();
     const XrPath trigger = path("/user/hand/right/input/trigger/value"),
                  left_grip = path("/user/hand/left/input/grip/pose");
-    CHECK(setFloat(session, right, path("/user/hand/right/input/nose/value"), 1) ==
-          XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setFloat(session, left, trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setFloat(session, path("/user/treadmill"), trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
-    checkEach(XR_ERROR_PATH_INVALID,
-              {setFloat(session, XR_NULL_PATH, trigger, 1), setFloat(session, right, 123456, 1)});
+    const auto pullIt = [&](XrPath of, XrPath source) { return setFloat(session, of, source, 1); };
+    checkEach(XR_ERROR_PATH_INVALID, {pullIt(XR_NULL_PATH, trigger), pullIt(right, 123456),
+                                      setActive(session, XR_NULL_PATH, right, XR_TRUE)});
     CHECK(setFloat(session, right, trigger, NAN) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(setFloat(XR_NULL_HANDLE, right, trigger, 1) == XR_ERROR_HANDLE_INVALID);
-    CHECK(setVector(session, right, trigger, {0, 0}) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setActive(session, path(kSimple), right, XR_TRUE) == XR_SUCCESS);
-    CHECK(setFloat(session, right, trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setActive(session, path(kXbox), right, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setActive(session, path("/interaction_profiles/nobody/nothing"), right, XR_TRUE) ==
-          XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setActive(session, XR_NULL_PATH, right, XR_TRUE) == XR_ERROR_PATH_INVALID);
-    CHECK(setLocation(session, left, trigger, local, kIdentity) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setLocation(session, left, path("/user/hand/left/input/trigger/value"), local, kIdentity) ==
-          XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setLocation(session, left, left_grip, XR_NULL_HANDLE, kIdentity) == XR_ERROR_HANDLE_INVALID);
     CHECK(setLocation(session, left, left_grip, local, {{0, 0, 0, 0}, {0, 0, 0}}) == XR_ERROR_POSE_INVALID);
+    checkEach(XR_ERROR_HANDLE_INVALID, {setFloat(XR_NULL_HANDLE, right, trigger, 1),
+                                        setLocation(session, left, left_grip, XR_NULL_HANDLE, kIdentity)});
+    CHECK(setActive(session, path(kSimple), right, XR_TRUE) == XR_SUCCESS);
+    checkEach(XR_ERROR_PATH_UNSUPPORTED,
+              {pullIt(right, trigger), setActive(session, path(kXbox), right, XR_TRUE),
+               setActive(session, path("/interaction_profiles/nobody/nothing"), right, XR_TRUE)});
+    CHECK(setActive(session, path(kTouch), right, XR_TRUE) == XR_SUCCESS);
+    CHECK(pullIt(right, trigger) == XR_SUCCESS);
+    checkEach(XR_ERROR_PATH_UNSUPPORTED,
+              {pullIt(right, path("/user/hand/right/input/nose/value")), pullIt(left, trigger),
+               pullIt(path("/user/treadmill"), trigger), setVector(session, right, trigger, {0, 0}),
+               setLocation(session, left, trigger, local, kIdentity),
+               setLocation(session, right, trigger, local, kIdentity)});
 }
 
-TEST_CASE("the headset says whether it tracks eyes, to whoever enabled the extension") {
-    const Extensions enabled = withGaze({});
-    for (const char* script : {"", "eye-tracking on\n", "eye-tracking refused\n"}) {
-        CHECK(supportsGaze(script, enabled) == XR_TRUE);
+TEST_CASE(
+    "the headset says whether it tracks eyes, to whoever enabled the extension; without a tracker, and if "
+    "the "
+    "wearer refuses, the gaze is inactive") {
+    CHECK(supportsGaze(InstanceFixture()) == 7);
+    for (const auto& [script, tracks, is_active] : {std::tuple("", true, true),
+                                                    {"eye-tracking on\n", true, true},
+                                                    {"eye-tracking refused\n", true, false},
+                                                    {"eye-tracking off\n", false, false}}) {
+        GazeFixture made(script);
+        CHECK((supportsGaze(made) == XR_TRUE) == tracks);
+        const Gaze gaze = made.at(0.1);
+        CHECK(these(gaze.is_active, (gaze.location.locationFlags != 0), (gaze.sampled != 0)) ==
+              these(is_active, is_active, is_active));
+        CHECK((made.profileOf(made.path("/user/eyes_ext")) == kEyes) == tracks);
     }
-    CHECK(these(supportsGaze("eye-tracking off\n", enabled), supportsGaze("", {})) == these(XR_FALSE, 7));
-    // Actions may name the eyes among their subaction paths.
-    const InstanceFixture made(kQuietScript, enabled);
-    made.makeAction(made.makeActionSet("looking"), "look", XR_ACTION_TYPE_POSE_INPUT,
-                    {made.path("/user/eyes_ext")});
 }
 
 TEST_CASE("the gaze goes where the script says, from between the eyes, with the time of its sample") {
@@ -237,7 +233,8 @@ TEST_CASE("the gaze goes where the script says, from between the eyes, with the 
     CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.yaw()) ==
           these(true, (kValid | kTracked), doctest::Approx(0).epsilon(0.001)));
     gaze = made.at(0.2);
-    CHECK(std::asin(std::sin(gaze.yaw() / 57.29578) / std::cos(-5 / 57.29578)) * 57.29578 ==
+    const double degree = std::numbers::pi / 180.0;
+    CHECK(std::asin(std::sin(gaze.yaw() * degree) / std::cos(5 * degree)) / degree ==
           doctest::Approx(10).epsilon(0.001));
     CHECK(gaze.pitch() == doctest::Approx(-5).epsilon(0.001));
     const XrVector3f& place = gaze.location.pose.position;
@@ -282,17 +279,6 @@ TEST_CASE(
     CHECK(sample.time == 0);
     // Out of focus.
     CHECK_FALSE(made.at(0.65).is_active);
-}
-
-TEST_CASE("a wearer who refuses, and a headset without a tracker, leave the gaze inactive") {
-    for (const std::string script : {"eye-tracking refused\n", "eye-tracking off\n"}) {
-        CAPTURE(script);
-        GazeFixture made(script);
-        const Gaze gaze = made.at(0.1);
-        CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.sampled) == these(false, 0, 0));
-        CHECK((made.profileOf(made.path("/user/eyes_ext")) != "none") ==
-              (script == "eye-tracking refused\n"));
-    }
 }
 
 TEST_CASE("a program's own test moves the gaze from inside") {

@@ -90,6 +90,14 @@ std::vector<Value> checkList(const List& list, const Value& blank = {}) {
     return values;
 }
 
+// The same of a function that lists what belongs to a handle; checks an invalid handle, too.
+template <class Value, class Function, class Handle, class... Rest>
+std::vector<Value> checkListOf(const Value& blank, Function call, Handle handle, Rest... rest) {
+    std::uint32_t count = 0;
+    CHECK(call(XR_NULL_HANDLE, rest..., 0, &count, nullptr) == XR_ERROR_HANDLE_INVALID);
+    return checkList<Value>([&](auto... step) { return call(handle, rest..., step...); }, blank);
+}
+
 inline void checkNear(const XrVector3f& found, const XrVector3f& expected) {
     CHECK(these(found.x, found.y, found.z) ==
           these(doctest::Approx(expected.x), doctest::Approx(expected.y), doctest::Approx(expected.z)));

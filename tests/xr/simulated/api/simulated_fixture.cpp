@@ -114,8 +114,7 @@ VulkanDevice::VulkanDevice(const InstanceFixture& runtime, PFN_vkGetInstanceProc
         VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messenger_info, 1, &feature, 0, nullptr};
     const VkInstanceCreateInfo vulkan_info{
         VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, &features, 0, &application, 1, &layer, 1, &extension};
-    const XrVulkanInstanceCreateInfoKHR info{
-        XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, runtime.system, 0, loader, &vulkan_info, nullptr};
+    const XrVulkanInstanceCreateInfoKHR info = runtime.vulkanInstanceInfo(loader, vulkan_info);
     VkResult result = VK_ERROR_UNKNOWN;
     REQUIRE(runtime.XR(xrCreateVulkanInstanceKHR)(runtime.instance, &info, &instance, &result) == XR_SUCCESS);
     REQUIRE(result == VK_SUCCESS);
@@ -123,23 +122,13 @@ VulkanDevice::VulkanDevice(const InstanceFixture& runtime, PFN_vkGetInstanceProc
         vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
     REQUIRE(makeMessenger(instance, &messenger_info, nullptr, &messenger) == VK_SUCCESS);
 
-    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr,
-                                               runtime.system, instance};
-    REQUIRE(runtime.XR(xrGetVulkanGraphicsDevice2KHR)(runtime.instance, &get, &physical_device) ==
-            XR_SUCCESS);
+    REQUIRE(runtime.findGraphicsDevice(instance, physical_device) == XR_SUCCESS);
     const float priority = 1;
     const VkDeviceQueueCreateInfo queue_info{
         VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
     const VkDeviceCreateInfo device_info{
         VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, nullptr, 0, 1, &queue_info, 0, nullptr, 0, nullptr, nullptr};
-    const XrVulkanDeviceCreateInfoKHR make{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR,
-                                           nullptr,
-                                           runtime.system,
-                                           0,
-                                           loader,
-                                           physical_device,
-                                           &device_info,
-                                           nullptr};
+    const XrVulkanDeviceCreateInfoKHR make = runtime.vulkanDeviceInfo(loader, physical_device, device_info);
     REQUIRE(runtime.XR(xrCreateVulkanDeviceKHR)(runtime.instance, &make, &device, &result) == XR_SUCCESS);
     REQUIRE(result == VK_SUCCESS);
 }
@@ -164,10 +153,8 @@ VulkanFixture::VulkanFixture(const std::string& script, const Extensions& more_e
       used(own == nullptr ? sharedDevice(*this) : *own) {
     XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
     REQUIRE(XR(xrGetVulkanGraphicsRequirements2KHR)(instance, system, &requirements) == XR_SUCCESS);
-    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system,
-                                               vulkan};
     VkPhysicalDevice found = VK_NULL_HANDLE;
-    REQUIRE(XR(xrGetVulkanGraphicsDevice2KHR)(instance, &get, &found) == XR_SUCCESS);
+    REQUIRE(findGraphicsDevice(vulkan, found) == XR_SUCCESS);
     REQUIRE(found == physical_device);
 }
 

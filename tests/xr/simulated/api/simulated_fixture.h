@@ -17,9 +17,11 @@
 
 namespace binosplat::test {
 
-inline constexpr const char* kQuietScript = "size 64 64\nframes none\n";
+inline const std::string kQuietScript = "size 64 64\nframes none\n";
 inline constexpr XrTime kStart = 1'000'000'000;  // where time in lock-step begins
 inline constexpr XrPosef kIdentity{{0, 0, 0, 1}, {0, 0, 0}};
+inline constexpr XrSwapchainImageWaitInfo kWait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr,
+                                                XR_INFINITE_DURATION};
 inline constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 inline constexpr const char* kTouch = "/interaction_profiles/oculus/touch_controller";
 inline constexpr const char* kSimple = "/interaction_profiles/khr/simple_controller";
@@ -48,6 +50,17 @@ XrActionSetCreateInfo actionSetInfo(const std::string& name, const std::string& 
 XrActionCreateInfo actionInfo(const std::string& name, const std::string& localized_name,
                               XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT);
 XrSwapchainCreateInfo swapchainInfo(VkFormat format = VK_FORMAT_R8G8B8A8_SRGB);
+
+// A view of a projection layer, and the layer of such views.
+inline XrCompositionLayerProjectionView projectionView(const XrSwapchainSubImage& image, const XrFovf& fov,
+                                                       const XrPosef& pose = kIdentity) {
+    return {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, pose, fov, image};
+}
+template <std::size_t count>
+XrCompositionLayerProjection projectionOf(XrSpace space,
+                                          const std::array<XrCompositionLayerProjectionView, count>& views) {
+    return {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, count, views.data()};
+}
 
 template <class Layer>
 const XrCompositionLayerBaseHeader* headerOf(const Layer& layer) {
@@ -91,6 +104,13 @@ struct InstanceFixture : Headset {
     bool has(const char* name) const {
         PFN_xrVoidFunction found = nullptr;
         return find_function(instance, name, &found) == XR_SUCCESS;
+    }
+
+    // What the system says of an extension, for which there is a structure.
+    XrSystemProperties systemProperties(void* of_extension = nullptr) const {
+        XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, of_extension};
+        REQUIRE(XR(xrGetSystemProperties)(instance, system, &properties) == XR_SUCCESS);
+        return properties;
     }
 
     XrPath path(const std::string& text) const {
@@ -172,26 +192,37 @@ struct InstanceFixture : Headset {
     XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const {
         return sync({XrActiveActionSet{set, subaction_path}});
     }
-    XrActionStateBoolean boolean(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStateBoolean>(XR(xrGetActionStateBoolean), XR_TYPE_ACTION_STATE_BOOLEAN,
-                                             action, hand);
+    auto boolean(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf(XR(xrGetActionStateBoolean), XR_TYPE_ACTION_STATE_BOOLEAN, action, hand);
     }
-    XrActionStateFloat number(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStateFloat>(XR(xrGetActionStateFloat), XR_TYPE_ACTION_STATE_FLOAT, action,
-                                           hand);
+    auto number(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf(XR(xrGetActionStateFloat), XR_TYPE_ACTION_STATE_FLOAT, action, hand);
     }
-    XrActionStateVector2f vector(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStateVector2f>(XR(xrGetActionStateVector2f), XR_TYPE_ACTION_STATE_VECTOR2F,
-                                              action, hand);
+    auto vector(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf(XR(xrGetActionStateVector2f), XR_TYPE_ACTION_STATE_VECTOR2F, action, hand);
     }
-    XrActionStatePose pose(XrAction action, XrPath hand = XR_NULL_PATH) const {
-        return stateOf<XrActionStatePose>(XR(xrGetActionStatePose), XR_TYPE_ACTION_STATE_POSE, action, hand);
+    auto pose(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf(XR(xrGetActionStatePose), XR_TYPE_ACTION_STATE_POSE, action, hand);
     }
     // The path of the current profile, or "none".
     std::string profileOf(XrPath user_path) const {
         XrInteractionProfileState state{XR_TYPE_INTERACTION_PROFILE_STATE};
         REQUIRE(XR(xrGetCurrentInteractionProfile)(session, user_path, &state) == XR_SUCCESS);
         return state.interactionProfile == XR_NULL_PATH ? "none" : textOf(state.interactionProfile);
+    }
+
+    XrVulkanInstanceCreateInfoKHR vulkanInstanceInfo(PFN_vkGetInstanceProcAddr loader,
+                                                     const VkInstanceCreateInfo& info) const {
+        return {XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, system, 0, loader, &info, nullptr};
+    }
+    XrVulkanDeviceCreateInfoKHR vulkanDeviceInfo(PFN_vkGetInstanceProcAddr loader, VkPhysicalDevice on,
+                                                 const VkDeviceCreateInfo& info) const {
+        return {XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, loader, on, &info, nullptr};
+    }
+    XrResult findGraphicsDevice(VkInstance vulkan, VkPhysicalDevice& found) const {
+        const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr,
+                                                   system, vulkan};
+        return XR(xrGetVulkanGraphicsDevice2KHR)(instance, &get, &found);
     }
 
     void begin(XrViewConfigurationType type = kStereo) const {
@@ -265,8 +296,9 @@ private:
         more.insert(more.end(), usual.begin(), usual.end());
         return more;
     }
-    template <class State, class Function>
-    State stateOf(Function get, XrStructureType type, XrAction action, XrPath hand) const {
+    template <class State>
+    State stateOf(XrResult(XRAPI_PTR* get)(XrSession, const XrActionStateGetInfo*, State*),
+                  XrStructureType type, XrAction action, XrPath hand) const {
         State state{type};
         const XrActionStateGetInfo info{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, action, hand};
         REQUIRE(get(session, &info, &state) == XR_SUCCESS);
@@ -342,13 +374,15 @@ struct SessionFixture : VulkanFixture {
         return swapchain;
     }
     std::vector<VkImage> imagesOf(XrSwapchain swapchain) const {
-        std::uint32_t count = 0;
-        REQUIRE(xrEnumerateSwapchainImages(swapchain, 0, &count, nullptr) == XR_SUCCESS);
-        std::vector<XrSwapchainImageVulkan2KHR> found(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR});
-        auto* const headers = reinterpret_cast<XrSwapchainImageBaseHeader*>(found.data());
-        REQUIRE(xrEnumerateSwapchainImages(swapchain, count, &count, headers) == XR_SUCCESS);
+        using Image = XrSwapchainImageVulkan2KHR;
+        const auto list = [&](std::uint32_t capacity, std::uint32_t* count, Image* found) {
+            return xrEnumerateSwapchainImages(swapchain, capacity, count,
+                                              reinterpret_cast<XrSwapchainImageBaseHeader*>(found));
+        };
         std::vector<VkImage> images;
-        for (const XrSwapchainImageVulkan2KHR& one : found) { images.push_back(one.image); }
+        for (const Image& one : checkList<Image>(list, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR})) {
+            images.push_back(one.image);
+        }
         return images;
     }
     // Returns its index.
@@ -357,11 +391,12 @@ struct SessionFixture : VulkanFixture {
         REQUIRE(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
         return index;
     }
-    // Acquire, wait, release.
-    std::uint32_t turn(XrSwapchain swapchain) const {
+    // Acquire and wait, then what is to be done with the image, and release.
+    std::uint32_t turn(
+        XrSwapchain swapchain, const std::function<void(VkImage)>& use = [](VkImage) {}) const {
         const std::uint32_t index = acquire(swapchain);
-        const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
-        REQUIRE(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
+        REQUIRE(xrWaitSwapchainImage(swapchain, &kWait) == XR_SUCCESS);
+        use(imagesOf(swapchain).at(index));
         REQUIRE(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
         return index;
     }

@@ -35,15 +35,13 @@ XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageT
 
 struct Heard {
     std::vector<std::string> messages;
+    XrDebugUtilsMessengerCreateInfoEXT info{XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+                                            nullptr,
+                                            kError | kInfo,
+                                            kValidation | kGeneral,
+                                            hear,
+                                            &messages};
 
-    XrDebugUtilsMessengerCreateInfoEXT info() {
-        return {XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-                nullptr,
-                kError | kInfo,
-                kValidation | kGeneral,
-                hear,
-                &messages};
-    }
     // The only message since the last call.
     std::string take() {
         REQUIRE(messages.size() == 1);
@@ -61,12 +59,9 @@ struct MessageFixture : HeadlessSession {
                                          "the session"};
 
     MessageFixture() : HeadlessSession(k1_0, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME}) {
-        const XrDebugUtilsMessengerCreateInfoEXT info = heard.info();
-        REQUIRE(create(&info) == XR_SUCCESS);
+        REQUIRE(create() == XR_SUCCESS);
     }
-    XrResult create(const XrDebugUtilsMessengerCreateInfoEXT* info) {
-        return XR(xrCreateDebugUtilsMessengerEXT)(instance, info, &messenger);
-    }
+    XrResult create() { return XR(xrCreateDebugUtilsMessengerEXT)(instance, &heard.info, &messenger); }
     void beMistaken() const {
         XrPath path = XR_NULL_PATH;
         CHECK(XR(xrStringToPath)(instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
@@ -78,6 +73,19 @@ struct MessageFixture : HeadlessSession {
 };
 
 XrDebugUtilsLabelEXT label(const char* name) { return {XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name}; }
+XrDebugUtilsMessengerCallbackDataEXT hello(const char* function,
+                                           std::span<XrDebugUtilsObjectNameInfoEXT> objects,
+                                           std::span<XrDebugUtilsLabelEXT> labels) {
+    return {XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
+            nullptr,
+            nullptr,
+            function,
+            "hello",
+            static_cast<std::uint32_t>(objects.size()),
+            objects.data(),
+            static_cast<std::uint32_t>(labels.size()),
+            labels.data()};
+}
 
 TEST_CASE_FIXTURE(
     MessageFixture,
@@ -92,8 +100,8 @@ TEST_CASE_FIXTURE(
     CHECK(heard.messages.empty());
     CHECK(XR(xrDestroyDebugUtilsMessengerEXT)(messenger) == XR_ERROR_HANDLE_INVALID);
 
-    XrDebugUtilsMessengerCreateInfoEXT info = heard.info();
-    const auto make = [&] { return create(&info); };
+    XrDebugUtilsMessengerCreateInfoEXT& info = heard.info;
+    const auto make = [&] { return create(); };
     checkChanges(make, XR_SUCCESS,
                  to(info.messageSeverities, XR_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT),
                  to(info.messageTypes, XR_DEBUG_UTILS_MESSAGE_TYPE_CONFORMANCE_BIT_EXT));
@@ -152,15 +160,7 @@ TEST_CASE_FIXTURE(
     checkEach(XR_SUCCESS, {begin_region(session, &frame), begin_region(session, &eye), insert(session, &here),
                            setName(instance, &object)});
     object.objectName = nullptr;
-    XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
-                                              nullptr,
-                                              nullptr,
-                                              "main",
-                                              "hello",
-                                              1,
-                                              &object,
-                                              0,
-                                              nullptr};
+    auto data = hello("main", {&object, 1}, {});
     CHECK(submit(instance, kInfo, kGeneral, &data) == XR_SUCCESS);
     CHECK(heard.take() ==
           "info general: none in main: hello, in here, in left eye, in frame, of the session");
@@ -192,15 +192,7 @@ TEST_CASE_FIXTURE(
     objects[1].objectName = nullptr;
     objects[2].objectHandle = 77;
     objects[2].objectName = "never registered";
-    XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
-                                              nullptr,
-                                              nullptr,
-                                              nullptr,
-                                              "hello",
-                                              3,
-                                              objects,
-                                              2,
-                                              labels};
+    auto data = hello(nullptr, objects, labels);
     const std::string rest =
         ": hello, in inner, in outer, of the session, of the session, of never registered";
     const auto send = [&] { return submit(instance, kInfo, kGeneral, &data); };
@@ -218,14 +210,13 @@ TEST_CASE(
     "a messenger in the chain hears why the instance itself was refused; messages come through the loader, "
     "too") {
     Heard heard;
-    const XrDebugUtilsMessengerCreateInfoEXT messenger_info = heard.info();
     {
         const Headset headset(kQuietScript);
         const Direct runtime;
         const Extensions foreign{XR_EXT_DEBUG_UTILS_EXTENSION_NAME, "XR_KHR_opengl_enable"},
             unknown{"XR_KHR_nothing"};
         XrInstanceCreateInfo info = instanceInfo(foreign);
-        info.next = &messenger_info;
+        info.next = &heard.info;
         CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
         CHECK(heard.take() ==
               "error validation: XR_ERROR_EXTENSION_NOT_PRESENT in xrCreateInstance: XR_KHR_opengl_enable: "
@@ -233,14 +224,13 @@ TEST_CASE(
               "XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
         // Without the extension, there is nobody to receive messages.
         info = instanceInfo(unknown);
-        info.next = &messenger_info;
+        info.next = &heard.info;
         CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
         CHECK(heard.messages.empty());
     }
     const InstanceFixture made(kQuietScript, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME});
     XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
-    REQUIRE(made.XR(xrCreateDebugUtilsMessengerEXT)(made.instance, &messenger_info, &messenger) ==
-            XR_SUCCESS);
+    REQUIRE(made.XR(xrCreateDebugUtilsMessengerEXT)(made.instance, &heard.info, &messenger) == XR_SUCCESS);
     XrPath path = XR_NULL_PATH;
     CHECK(xrStringToPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
     CHECK(heard.take() == kMistake);

@@ -32,8 +32,7 @@ public:
     void begin(XrSwapchain swapchain, std::uint32_t width, std::uint32_t height,
                const std::vector<Texel>& texels) const {
         const std::uint32_t index = fixture.acquire(swapchain);
-        const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
-        REQUIRE(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
+        REQUIRE(xrWaitSwapchainImage(swapchain, &kWait) == XR_SUCCESS);
         const auto layers = static_cast<std::uint32_t>(texels.size() / (std::size_t{width} * height));
         copy(fixture.imagesOf(swapchain).at(index), {width, height, 1}, layers, texels.data(),
              texels.size() * sizeof(Texel));

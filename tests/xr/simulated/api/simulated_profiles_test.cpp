@@ -1,6 +1,8 @@
 // Every input of every interaction profile, moved and read back, and what can be bound in which version;
 // without a loader.
+#include "tests/script.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
+#include "tests/xr/simulated/folder.h"
 #include "xr/simulated/api/profiles.h"
 
 SUITE(simulated_profiles) {
@@ -14,16 +16,11 @@ struct Bound {
 };
 
 XrActionType typeOf(simulated::ComponentKind kind) {
-    switch (kind) {
-        case simulated::ComponentKind::kBoolean:
-            return XR_ACTION_TYPE_BOOLEAN_INPUT;
-        case simulated::ComponentKind::kFloat:
-            return XR_ACTION_TYPE_FLOAT_INPUT;
-        case simulated::ComponentKind::kPose:
-            return XR_ACTION_TYPE_POSE_INPUT;
-        default:
-            return XR_ACTION_TYPE_VIBRATION_OUTPUT;
-    }
+    using enum simulated::ComponentKind;
+    return kind == kBoolean ? XR_ACTION_TYPE_BOOLEAN_INPUT
+           : kind == kFloat ? XR_ACTION_TYPE_FLOAT_INPUT
+           : kind == kPose  ? XR_ACTION_TYPE_POSE_INPUT
+                            : XR_ACTION_TYPE_VIBRATION_OUTPUT;
 }
 
 // Version 1.1, with the extension that the profile may need, and without one for older names of the palm and
@@ -99,22 +96,22 @@ struct Played : HeadlessSession {
         float x, y;
     };
     Reading read(const Bound& bound) const {
-        const auto reading = [](const auto& state, float x, float y) {
-            return Reading{state.isActive != 0, state.changedSinceLastSync != 0, state.lastChangeTime, x, y};
+        const auto reading = [](const auto& state) {
+            const bool is_active = state.isActive != 0, has_changed = state.changedSinceLastSync != 0;
+            if constexpr (requires { state.currentState.x; }) {
+                const auto [x, y] = state.currentState;
+                return Reading{is_active, has_changed, state.lastChangeTime, x, y};
+            } else {
+                const auto x = static_cast<float>(state.currentState);
+                return Reading{is_active, has_changed, state.lastChangeTime, x, 0};
+            }
         };
-        if (bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT) {
-            const auto state = boolean(bound.action, user_path);
-            return reading(state, state.currentState ? 1.0f : 0.0f, 0);
+        if (bound.type == XR_ACTION_TYPE_POSE_INPUT) {
+            return {pose(bound.action, user_path).isActive != 0, false, 0, 0, 0};
         }
-        if (bound.type == XR_ACTION_TYPE_FLOAT_INPUT) {
-            const auto state = number(bound.action, user_path);
-            return reading(state, state.currentState, 0);
-        }
-        if (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT) {
-            const auto state = vector(bound.action, user_path);
-            return reading(state, state.currentState.x, state.currentState.y);
-        }
-        return {pose(bound.action, user_path).isActive != 0, false, 0, 0, 0};
+        return bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? reading(boolean(bound.action, user_path))
+               : bound.type == XR_ACTION_TYPE_FLOAT_INPUT ? reading(number(bound.action, user_path))
+                                                          : reading(vector(bound.action, user_path));
     }
 
     // A quarter turn to the left, at (1, 2, 3).
@@ -133,81 +130,39 @@ struct Played : HeadlessSession {
     }
 };
 
-// Whether it can be bound in 1.0, in 1.1, and in 1.0 with an extension.
-struct Binding {
-    std::string profile, path, extension;
-    bool of_1_0, of_1_1;
-
-    [[nodiscard]] XrActionType type() const {
-        const auto has = [&](const char* part) { return path.find(part) != std::string::npos; };
-        if (has("haptic_")) { return XR_ACTION_TYPE_VIBRATION_OUTPUT; }
-        if (has("pinch_ext/value")) { return XR_ACTION_TYPE_FLOAT_INPUT; }
-        return has("/pose") || has("gaze_ext") || has("grip_surface") ? XR_ACTION_TYPE_POSE_INPUT
-                                                                      : XR_ACTION_TYPE_BOOLEAN_INPUT;
-    }
-};
-
-// One line per profile: whether its paths are accepted in "1.0" and 1.1, from "1.1" on, or never ("none"),
-// and the extension.
-std::vector<Binding> bindingsIn(const char* lines) {
-    std::vector<Binding> bindings;
-    std::istringstream stream(lines);
-    for (std::string line; std::getline(stream, line);) {
-        const std::vector<std::string> words = wordsIn(line);
-        for (std::size_t i = 3; i < words.size(); ++i) {
-            bindings.push_back(
-                {words[2], words[i], words[1] == "-" ? "" : words[1], words[0] == "1.0", words[0] != "none"});
-        }
-    }
-    return bindings;
+XrActionType typeOf(const std::string& path) {
+    const auto has = [&](const char* part) { return path.find(part) != std::string::npos; };
+    if (has("haptic")) { return XR_ACTION_TYPE_VIBRATION_OUTPUT; }
+    if (has("pinch_ext/value")) { return XR_ACTION_TYPE_FLOAT_INPUT; }
+    return has("/pose") || has("gaze_ext") || has("grip_surface") ? XR_ACTION_TYPE_POSE_INPUT
+                                                                  : XR_ACTION_TYPE_BOOLEAN_INPUT;
 }
 
-// Paths of the core, paths that nothing defines, and paths of extensions, some of which became part of 1.1.
-// The palm's surface is grip_surface in 1.1 and palm_ext in an extension. Finger tips are poses of every
-// hand, gestures exist only in the hands' profile, and the eyes' profile has a gaze and nothing else.
-constexpr const char* kBindings =
-    R"(1.0 - khr/simple_controller hand/left/input/select/click hand/right/output/haptic
-1.0 - google/daydream_controller hand/left/input/trackpad/touch
-1.0 - htc/vive_controller hand/right/input/squeeze/click hand/right/input/trackpad
-1.0 - htc/vive_pro head/input/volume_up/click
-1.0 - microsoft/motion_controller hand/left/input/thumbstick/x
-1.0 - microsoft/xbox_controller gamepad/input/dpad_up/click gamepad/output/haptic_left_trigger
-1.0 - oculus/go_controller hand/left/input/back/click
-1.0 - oculus/touch_controller hand/left/input/x/click hand/right/input/a/touch hand/left/input/thumbrest/touch
-1.0 - valve/index_controller hand/left/input/squeeze/force hand/left/input/a/click
-none - khr/simple_controller hand/left/input/trigger/value head/input/select/click hand/left hand/left/input
-none - google/daydream_controller hand/left/output/haptic
-none - htc/vive_controller hand/left/input/squeeze/value
-none - htc/vive_pro hand/left/input/system/click
-none - microsoft/motion_controller hand/left/input/squeeze/value
-none - microsoft/xbox_controller hand/left/input/a/click gamepad/output/haptic gamepad/input/grip_surface/pose
-none - oculus/go_controller hand/left/input/menu/click
-none - oculus/touch_controller hand/right/input/x/click hand/left/input/a/click hand/right/input/menu/click
-none - oculus/touch_controller hand/left/input/trig/value hand/left/input/trigger/click
-none - valve/index_controller hand/left/input/trackpad/click
-none - nobody/nothing hand/left/input/a/click
-none - bytedance/pico4_controller hand/right/input/menu/click
-none - meta/touch_controller_quest_1_rift_s hand/left/input/thumbrest/touch
-none - htc/vive_cosmos_controller hand/left/input/thumbrest/touch
-1.1 XR_EXT_hp_mixed_reality_controller hp/mixed_reality_controller hand/left/input/x/click
-1.1 XR_EXT_samsung_odyssey_controller samsung/odyssey_controller hand/left/input/trackpad/click
-1.1 XR_HTC_vive_cosmos_controller_interaction htc/vive_cosmos_controller hand/left/input/shoulder/click
-1.1 XR_HTC_vive_focus3_controller_interaction htc/vive_focus3_controller hand/right/input/squeeze/touch
-1.1 XR_ML_ml2_controller_interaction ml/ml2_controller hand/right/input/home/click
-1.1 XR_BD_controller_interaction bytedance/pico_neo3_controller hand/right/input/menu/click
-1.1 XR_BD_controller_interaction bytedance/pico4_controller hand/left/input/menu/click
-1.1 XR_BD_controller_interaction bytedance/pico_g3_controller hand/left/input/thumbstick/click hand/right/input/thumbstick/x
-1.1 - oculus/touch_controller hand/left/input/trigger/proximity hand/right/input/thumb_resting_surfaces/proximity
-1.1 - meta/touch_pro_controller hand/left/input/stylus/force hand/left/output/haptic_thumb
-1.1 - meta/touch_plus_controller hand/left/input/trigger/force
-1.1 - meta/touch_controller_quest_2 hand/left/input/thumbrest/touch
-1.1 - meta/touch_controller_quest_1_rift_s hand/left/input/trigger/proximity
-1.1 - meta/touch_controller_rift_cv1 hand/left/input/thumb_resting_surfaces/proximity
-1.1 XR_KHR_maintenance1 khr/simple_controller hand/left/input/grip_surface/pose hand/left/input/grip_surface
-none XR_EXT_palm_pose khr/simple_controller hand/left/input/palm_ext/pose
-none XR_EXT_hand_interaction khr/simple_controller hand/left/input/pinch_ext/pose hand/right/input/poke_ext/pose
-none XR_EXT_hand_interaction ext/hand_interaction_ext hand/left/input/pinch_ext/value
-none XR_EXT_eye_gaze_interaction ext/eye_gaze_interaction eyes_ext/input/gaze_ext/pose eyes_ext/input/gaze_ext)";
+SCRIPT(simulated_profiles, "xr/simulated/api/simulated_profiles") {
+    const simulated::Folder folder;
+    std::unique_ptr<DirectInstance> made;
+    const auto begin = [&](const std::string& line, const std::string&) {
+        const std::vector<std::string> words = wordsIn(line);
+        Extensions extensions;
+        for (std::size_t i = 1; i < words.size(); ++i) { extensions.push_back(words[i].c_str()); }
+        made.reset();
+        made = std::make_unique<DirectInstance>(words[0] == "1.1" ? k1_1 : k1_0, extensions);
+        return Outcome{0, "", ""};
+    };
+    ScriptHost host{begin, folder.path};
+    for (const auto& [verb, result] :
+         {std::pair("takes", XR_SUCCESS), std::pair("refuses", XR_ERROR_PATH_UNSUPPORTED)}) {
+        host.verbs[verb] = [&, expected = result](const std::string& line) {
+            const std::vector<std::string> words = wordsIn(line);
+            for (std::size_t i = 1; i < words.size(); ++i) {
+                INFO(words[i]);
+                CHECK(made->suggest("/interaction_profiles/" + words[0], "/user/" + words[i],
+                                    typeOf(words[i])) == expected);
+            }
+        };
+    }
+    runScript(host);
+}
 
 TEST_CASE(
     "every input of every profile is read as it is moved, each by itself, every pose where it is put, while "
@@ -256,41 +211,6 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("each profile takes its own paths and no others, in its version, or with its extension") {
-    constexpr const char* kHands = "XR_EXT_hand_interaction";
-    constexpr const char* kEyes = XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME;
-    const std::vector<Binding> bindings = bindingsIn(kBindings);
-    const auto check = [&](XrVersion version, const Extensions& extensions, const auto& isTaken) {
-        const DirectInstance made(version, extensions);
-        for (const Binding& one : bindings) {
-            INFO(one.profile, " ", one.path, " ", version == k1_1 ? "1.1 " : "1.0 ",
-                 extensions.empty() ? "" : extensions[0]);
-            const XrResult expected = isTaken(one) ? XR_SUCCESS : XR_ERROR_PATH_UNSUPPORTED;
-            CHECK(made.suggest("/interaction_profiles/" + one.profile, "/user/" + one.path, one.type()) ==
-                  expected);
-        }
-    };
-    check(k1_0, {}, [](const Binding& one) { return one.of_1_0; });
-    check(k1_1, {}, [](const Binding& one) { return one.of_1_1; });
-    std::set<std::string> extensions;
-    for (const Binding& one : bindings) {
-        if (!one.extension.empty()) { extensions.insert(one.extension); }
-    }
-    for (const std::string& extension : extensions) {
-        check(k1_0, {extension.c_str()},
-              [&](const Binding& one) { return one.of_1_0 || one.extension == extension; });
-    }
-    for (const auto& [extension, profile, path] :
-         {std::tuple(kHands, kSimple, "/user/hand/left/input/pinch_ext/value"),
-          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction",
-                     "/user/eyes_ext/input/aim/pose"),
-          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction",
-                     "/user/hand/left/input/gaze_ext/pose"),
-          std::tuple(kEyes, kSimple, "/user/eyes_ext/input/gaze_ext/pose")}) {
-        CHECK(DirectInstance(k1_1, {extension}).suggest(profile, path) == XR_ERROR_PATH_UNSUPPORTED);
-    }
-}
-
 TEST_CASE("the palm's surface lies beside the grip, turned towards the index finger") {
     const HeadlessSession made(k1_1, {}, "controller left 0 position 1 2 3 turn 40 10\n");
     const XrActionSet set = made.makeActionSet("set");
@@ -313,20 +233,9 @@ TEST_CASE("the palm's surface lies beside the grip, turned towards the index fin
                                                      made.makeActionSpace(actions[0], hand), kStart);
         CHECK(these(location.locationFlags, location.pose.position.x, location.pose.orientation.x) ==
               these(15, doctest::Approx(hand == paths[0] ? -0.02 : 0.02),
-                    doctest::Approx(-std::sin(3.14159265 / 8))));
-        CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
+                    doctest::Approx(-std::sin(std::numbers::pi / 8))));
+        CHECK(location.pose.orientation.w == doctest::Approx(std::cos(std::numbers::pi / 8)));
     }
-}
-
-TEST_CASE("what a path depends on is read as the registry writes it: + is and, a comma is or") {
-    const simulated::Enabled older{false, {"A", "B"}};
-    for (const char* met : {"", "A", "A+B", "C,B", "C+A,B", "B,C+A"}) {
-        CHECK_MESSAGE(older.meets(met), met);
-    }
-    for (const char* not_met : {"C", "A+C", "A+C,XR_VERSION_1_1"}) {
-        CHECK_FALSE_MESSAGE(older.meets(not_met), not_met);
-    }
-    CHECK(simulated::Enabled{true, {}}.meets("A+C,XR_VERSION_1_1"));
 }
 
 }  // SUITE(simulated_profiles)

@@ -64,7 +64,10 @@ Rgb at(const simulated::RgbPicture& both, simulated::Side side, std::uint32_t x,
     return {both.bytes[i], both.bytes[i + 1], both.bytes[i + 2]};
 }
 
-TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format says, halves as light") {
+TEST_CASE_FIXTURE(
+    Wearer,
+    "every format comes through, encoded as its format says, halves as light, of which more than "
+    "white is white and NaN is black") {
     const std::vector<Bytes4> texels{
         {200, 100, 50, 255}, {1, 2, 3, 255}, {0, 128, 255, 0}, {77, 88, 99, 128}};
     for (const auto& [format, is_bgr, is_linear] :
@@ -85,11 +88,17 @@ TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format say
             }
         }
     }
-    const Halves4 half{glm::packHalf1x16(0.25f), glm::packHalf1x16(0.5f), glm::packHalf1x16(3.0f),
+    const auto halves = [](float r, float g, float b) {
+        return Halves4{glm::packHalf1x16(r), glm::packHalf1x16(g), glm::packHalf1x16(b),
                        glm::packHalf1x16(1.0f)};
+    };
+    const Halves4 light = halves(0.25f, 0.5f, 3.0f), odd = halves(-1.0f, NAN, INFINITY);
     const simulated::RgbPicture seen =
-        see(quadOf(painted(std::vector<Halves4>(4, half), VK_FORMAT_R16G16B16A16_SFLOAT)));
-    CHECK(at(seen, kLeft, 1, 1) == Rgb{encoded(0.25), encoded(0.5), 255});
+        see(quadOf(painted(std::vector<Halves4>{light, odd, light, odd}, VK_FORMAT_R16G16B16A16_SFLOAT)));
+    CHECK(at(seen, kLeft, 0, 0) == Rgb{encoded(0.25), encoded(0.5), 255});
+    CHECK(at(seen, kLeft, 3, 3) == Rgb{0, 0, 255});
+    // NaN does not spread to what lies beside it, three quarters of the way.
+    CHECK(at(seen, kLeft, 1, 1)[1] == encoded(0.75 * 0.5));
 }
 
 TEST_CASE_FIXTURE(Wearer, "each eye gets its array layer and its rectangle") {
@@ -102,19 +111,9 @@ TEST_CASE_FIXTURE(Wearer, "each eye gets its array layer and its rectangle") {
         texels[8 + 4 * row + 2] = texels[8 + 4 * row + 3] = kGreen;
     }
     painter.paint(swapchain, 4, 2, texels);
-    const std::array<XrCompositionLayerProjectionView, 2> views{{{XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
-                                                                  nullptr,
-                                                                  kIdentity,
-                                                                  kSquare,
-                                                                  {swapchain, {{0, 0}, {2, 2}}, 0}},
-                                                                 {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
-                                                                  nullptr,
-                                                                  kIdentity,
-                                                                  kSquare,
-                                                                  {swapchain, {{2, 0}, {2, 2}}, 1}}}};
-    const XrCompositionLayerProjection projection{
-        XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, local, 2, views.data()};
-    const simulated::RgbPicture seen = see(projection);
+    const std::array views{projectionView({swapchain, {{0, 0}, {2, 2}}, 0}, kSquare),
+                           projectionView({swapchain, {{2, 0}, {2, 2}}, 1}, kSquare)};
+    const simulated::RgbPicture seen = see(projectionOf(local, views));
     for (std::uint32_t i = 0; i < 16; ++i) {
         CHECK(at(seen, kLeft, i % 4, i / 4) == kRedSeen);
         CHECK(at(seen, kRight, i % 4, i / 4) == kGreenSeen);
@@ -185,14 +184,8 @@ TEST_CASE("a picture drawn for another pose is turned to where it belongs") {
     }
     made.painter.paint(swapchain, 4, 4, texels);
     std::array<XrCompositionLayerProjectionView, 2> views{};
-    views.fill({XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
-                nullptr,
-                kIdentity,
-                kSquare,
-                {swapchain, {{0, 0}, {4, 4}}, 0}});
-    const XrCompositionLayerProjection projection{
-        XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, made.local, 2, views.data()};
-    const simulated::RgbPicture seen = made.see(projection);
+    views.fill(projectionView({swapchain, {{0, 0}, {4, 4}}, 0}, kSquare));
+    const simulated::RgbPicture seen = made.see(projectionOf(made.local, views));
     CHECK(at(seen, kLeft, 0, 1) == kBlackSeen);
     CHECK(at(seen, kLeft, 1, 1) == kRedSeen);
     // Texel middles are at 0.5, 1.5 ...: column 1.556 is 1.056 texels from the first, so 94.4 % green and 5.6
