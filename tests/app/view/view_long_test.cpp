@@ -2,7 +2,7 @@
 // is taken off, lost tracking and lost sessions. Memory does not grow, and no error is reported.
 // BINOSPLAT_WALK_SECONDS=7200 in the environment makes it two hours of the wearer's time instead of a minute;
 // frames come as fast as they can, ten for each such second. BINOSPLAT_WALK_KEEP=FILE keeps the list of what
-// was alive in that file, see tests/faults/live.h. Under the address sanitizer,
+// was alive in that file, see tests/faults/live.cpp. Under the address sanitizer,
 // ASAN_OPTIONS=malloc_context_size=1:quarantine_size_mb=16 keeps the sanitizer's own memory from growing: it
 // remembers each stack that it sees, and those of drivers without frame pointers are never the same.
 #include "tests/app/view/view_acts.h"

@@ -108,7 +108,7 @@ TEST_CASE_FIXTURE(AtWork, "no frame makes a kernel, also where the eyes come to 
 
 TEST_CASE_FIXTURE(AtWork, "with a load bound and resolution fall at once, and are back once it has gone") {
     // The head moves in front of a display of 30 Hz. First everything fits into 33 ms, then frames take 60
-    // (tests/faults/load.h), then everything fits again. Staying axes would add a border larger than a
+    // (tests/faults/load.cpp), then everything fits again. Staying axes would add a border larger than a
     // picture this small.
     constexpr std::size_t kComes = 40, kGoes = 100, kSecond = 30;
     const ViewRun run = runClean(
