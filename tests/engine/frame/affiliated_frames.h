@@ -30,10 +30,8 @@ inline std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad, dou
     const std::array<ViewAngles, 2> angles{ViewAngles{-0.7, 0.55, 0.6, -0.65},
                                            ViewAngles{-0.55, 0.7, 0.6, -0.65}};
     for (int e = 0; e < 2; ++e) {
+        eyes[e] = turned(eyes[e], e == kLeft ? -canting_rad : canting_rad);
         eyes[e].intrinsics = intrinsicsFromAngles(angles[e], eyes[e].size_px);
-        const double turn = e == kLeft ? -canting_rad : canting_rad;
-        eyes[e].world_from_camera.orientation =
-            eyes[e].world_from_camera.orientation * glm::angleAxis(turn, glm::dvec3(0, 1, 0));
     }
     return eyes;
 }
@@ -53,10 +51,8 @@ inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& ey
 
 // Only the marked tiles; everything else is black.
 inline Image keepTiles(Image image, const std::vector<std::uint32_t>& tile_kinds) {
-    const std::size_t columns = (image.size_px.x + 15) / 16;
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
-        const std::size_t x = i % image.size_px.x, y = i / image.size_px.x;
-        if (tile_kinds[(y / 16) * columns + x / 16] == 0) {
+        if (tile_kinds[tileOf(i, image.size_px)] == 0) {
             std::fill_n(image.values.begin() + static_cast<std::ptrdiff_t>(i) * image.channels,
                         image.channels, 0.0f);
         }

@@ -18,12 +18,11 @@ TEST_CASE_FIXTURE(Atelier,
             KeptFrame ahead(context(), scene);
             const auto waited = StereoFrame::beside(ahead);
             FrameSettings settings = makeSettings(mode);
-            settings.keep_history = hasHistory(mode);
             const int sizes = settings.keep_history || most_px.x > 0 ? 5 : 1;
             for (int step = 0; step < 4 * sizes; ++step) {
                 const glm::uvec2 size_px = sizes_px.at(static_cast<std::size_t>(step / 4));
                 const auto eyes = eyesAt(ofSize(view.eye, size_px), step);
-                std::vector<std::uint8_t> hidden(std::size_t{tilesOf(size_px).x} * tilesOf(size_px).y, 0);
+                std::vector<std::uint8_t> hidden(tileCount(size_px), 0);
                 hidden.front() = 1;
                 if (step / 4 >= 2) { settings.hidden_tiles = {hidden, hidden}; }
                 settings.most_px = most_px;
@@ -66,22 +65,12 @@ TEST_CASE_FIXTURE(Atelier,
     };
     for (int step = 0; step < 6; ++step) {
         take(frame.renderAhead(eyesAt(view.eye, step),
-                               makeSettings(Mode::kShared, static_cast<std::uint64_t>(step))));
+                               makeSettings(Mode::kShared, kLeft, static_cast<std::uint64_t>(step))));
     }
     take(frame.finish());
     // The first frame is waited for, since nothing is known about its lists.
     CHECK(told == std::vector{0, -1, -1, 1, 2, 3, 5});
     CHECK_FALSE(frame.finish().has_value());
-}
-
-TEST_CASE_FIXTURE(Atelier,
-                  "lists have room ahead of what eyes need, so that a view that moves is not cut short") {
-    KeptFrame frame(context(), scene, kNoRoom);
-    for (int step = 0; step < 20; ++step) {
-        const auto result = frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared));
-        if (step == 0) { CHECK(countOf(*result, "frames_done_again") == 1); }  // nothing was known yet
-    }
-    CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
 TEST_CASE_FIXTURE(Atelier,
@@ -163,23 +152,23 @@ TEST_CASE_FIXTURE(Atelier, "other sizes, modes and hidden tiles wait for the fra
     for (int round = 0; round < 2; ++round) {
         for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kPaper}) {
             for (int step = 0; step < 3; ++step) {
-                frame.renderAhead(eyesAt(view.eye, step), makeSettings(mode, ++mark));
+                frame.renderAhead(eyesAt(view.eye, step), makeSettings(mode, kLeft, ++mark));
             }
-            FrameSettings masked = makeSettings(mode, ++mark);
+            FrameSettings masked = makeSettings(mode, kLeft, ++mark);
             masked.hidden_tiles = {hidden, hidden};
             CHECK(frame.renderAhead(eyesAt(view.eye, 3), masked)->mark == mark);
-            CHECK(frame.renderAhead(small, makeSettings(mode, ++mark))->mark == mark);
+            CHECK(frame.renderAhead(small, makeSettings(mode, kLeft, ++mark))->mark == mark);
         }
     }
     CHECK_FALSE(frame.finish().has_value());
 }
 
 TEST_CASE_FIXTURE(
-    Gpu,
+    Atelier,
     "frames with the same kernels draw their own scenes, also on two threads at once, and one of them can "
     "go") {
-    const ViewedScene view = viewAtelier(), other_view = test::viewBuiltin("builtin:fence", {96, 96});
-    const GpuScene scene(context(), view.scene), other_scene(context(), other_view.scene);
+    const ViewedScene other_view = viewBuiltin("builtin:fence", {96, 96});
+    const GpuScene other_scene(context(), other_view.scene);
     const auto pictureOf = [](StereoFrame& frame, const Eye& eye) {
         frame.render(eyesAt(eye, 0), makeSettings(Mode::kPredicted));
         return frame.readPicture(kRight).values;

@@ -17,7 +17,6 @@ TEST_CASE_FIXTURE(
         CAPTURE(nameOf(mode));
         KeptFrame frame(context(), scene, kNoRoom);
         FrameSettings settings = makeSettings(mode);
-        settings.keep_history = hasHistory(mode);
         settings.waits_for_lists = false;
         settings.most_px = most_px;
         goAhead(frame, eyesOf(most_px), settings, 2);
@@ -59,13 +58,13 @@ TEST_CASE_FIXTURE(
         // The first frame, a jump to where there is nothing, and one back.
         for (const Eye& eye : {view.eye, awayFrom(view.eye), view.eye}) {
             const auto eyes = eyesAt(eye, 0);
-            const auto first = frame.renderAhead(eyes, makeSettings(mode, ++mark));
+            const auto first = frame.renderAhead(eyes, makeSettings(mode, kLeft, ++mark));
             REQUIRE(first.has_value());
             CHECK(first->mark == mark);
             CHECK(countOf(*first, "frames_done_again") <= before + 1);
             if (mark == 1) { CHECK(countOf(*first, "frames_done_again") == 1); }
             // Nor is any later frame cut short.
-            const FrameResult last = goAhead(frame, eyes, makeSettings(mode, mark), 3);
+            const FrameResult last = goAhead(frame, eyes, makeSettings(mode, kLeft, mark), 3);
             CHECK(countOf(last, "frames_done_again") <= before + 2);
             CHECK(countOf(last, "frames_cut_short") == countOf(*first, "frames_cut_short"));
             before = countOf(last, "frames_done_again");
@@ -87,7 +86,6 @@ TEST_CASE_FIXTURE(Atelier,
             KeptFrame frame(context(), scene, kNoRoom);
             const auto waited = StereoFrame::beside(frame);
             FrameSettings settings = makeSettings(mode);
-            settings.keep_history = hasHistory(mode);
             settings.waits_for_lists = false;
             if (has_room) { frame.renderAhead(there, settings); }
             goAhead(frame, has_room ? before : nowhere, settings, 3);
@@ -191,22 +189,18 @@ TEST_CASE_FIXTURE(Atelier,
     CHECK(waited > 0);
 }
 
-TEST_CASE_FIXTURE(
-    Atelier,
-    "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
+TEST_CASE_FIXTURE(Atelier,
+                  "a frame that finds no room without a jump is counted, and the next one is whole") {
+    // Nothing moves but a wall of splats that comes through the near plane.
     const auto eyes = eyesAt(view.eye, 0);
-    // Or nothing moves but a wall of splats that comes through the near plane.
-    for (const bool jumps : {true, false}) {
-        CAPTURE(jumps);
-        KeptFrame frame(context(), scene, kNoRoom);
-        const auto waited = StereoFrame::beside(frame);
-        goAhead(frame, jumps ? eyesAt(awayFrom(view.eye), 0) : eyes, jumps ? seeing() : blind(), 3);
-        const FrameResult last = goAhead(frame, eyes, seeing(), jumps ? 1 : 4);
-        CHECK((countOf(last, "frames_cut_short") > 0) == !jumps);
-        CHECK(countOf(last, "frames_done_again") > 0);
-        waited->render(eyes, seeing());
-        CHECK(shownBy(frame) == shownBy(*waited));
-    }
+    KeptFrame frame(context(), scene, kNoRoom);
+    const auto waited = StereoFrame::beside(frame);
+    goAhead(frame, eyes, blind(), 3);
+    const FrameResult last = goAhead(frame, eyes, seeing(), 4);
+    CHECK(countOf(last, "frames_cut_short") > 0);
+    CHECK(countOf(last, "frames_done_again") > 0);
+    waited->render(eyes, seeing());
+    CHECK(shownBy(frame) == shownBy(*waited));
 }
 
 TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the picture, not the session") {
@@ -218,8 +212,7 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     roomy.render(eyes, seeing());
     const std::uint64_t most = context().memoryUse().current_bytes - before;
 
-    const Context tight(
-        {.device = {}, .validation = test::kValidation, .memory_limit_bytes = (least + most) / 2});
+    const Context tight({.device = {}, .validation = kValidation, .memory_limit_bytes = (least + most) / 2});
     const GpuScene held(tight, view.scene);
     StereoFrame frame(tight, held, kNoRoom);
     goAhead(frame, eyes, blind(), 3);
@@ -231,7 +224,7 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     // Two were in flight.
     CHECK(countOf(goAhead(frame, eyes, blind(), 4), "frames_cut_short") <= cut_short + 2);
     // Another scene, which fits, starts afresh in the same frame object.
-    const ViewedScene splat = test::viewBuiltin("builtin:one-splat", {96, 96});
+    const ViewedScene splat = viewBuiltin("builtin:one-splat", {96, 96});
     const GpuScene splat_scene(tight, splat.scene), roomy_splat(context(), splat.scene);
     frame.show(splat_scene);
     last = goAhead(frame, eyesAt(splat.eye, 3), seeing(), 4);
@@ -246,7 +239,7 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
 TEST_CASE_FIXTURE(Atelier,
                   "pictures that the device has no memory for are refused before a frame is begun, and "
                   "smaller ones go on") {
-    const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = 64u << 20});
+    const Context tight({.device = {}, .validation = kValidation, .memory_limit_bytes = 64u << 20});
     const GpuScene held(tight, view.scene);
     StereoFrame frame(tight, held);
     const FrameSettings settings = makeSettings(Mode::kPredicted);
@@ -261,7 +254,7 @@ TEST_CASE_FIXTURE(Atelier,
         frame.finish();
         return shownBy(frame);
     };
-    const test::PairOfValues before = show();
+    const PairOfValues before = show();
     for (int time = 0; time < 2; ++time) { CHECK_THROWS_AS(frame.reserve(large, settings), Error); }
     CHECK(show() == before);
     CHECK(tight.validationMessages().empty());

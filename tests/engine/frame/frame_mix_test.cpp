@@ -160,7 +160,7 @@ std::vector<Image> picturesAlone(StereoFrame& other, const std::vector<Eye>& eye
 }
 
 TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
-    const ViewedScene room = test::viewBuiltin("builtin:atelier", {96, 80}, 8000);
+    const ViewedScene room = viewBuiltin("builtin:atelier", {96, 80}, 8000);
     for (unsigned seed = 1; seed <= 4; ++seed) {
         Walk walk(seed, room.eye);
         KeptFrame mixed(context(), room.scene);

@@ -45,6 +45,28 @@ public:
           StereoFrame(context, *own_scene, kernels, options) {}
 };
 
+// Frames that can have a history keep one.
+inline FrameSettings makeSettings(Mode mode, Side dominant = kLeft, std::uint64_t mark = 0) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.dominant = dominant;
+    settings.mark = mark;
+    settings.keep_history = hasHistory(mode);
+    return settings;
+}
+
+// Where an eye looks that sees little of its picture. One this small shows more than the eye resolves only
+// far from the gaze.
+inline const Gaze kAside{{-3.0, 1.0, -2.0}, 0.0};
+
+// A head that walks 3 mm a step and turns a little.
+inline std::array<Eye, 2> walkedEyes(Eye eye, double step) {
+    eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
+    eye.world_from_camera.orientation = eye.world_from_camera.orientation *
+                                        glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
+    return stereoPair(eye, 0.063);
+}
+
 // 0 before the first frame.
 inline std::uint64_t countOf(const FrameResult& result, const char* name) {
     const auto counters = result.counters.named();

@@ -5,20 +5,6 @@
 
 namespace binosplat::test::ahead {
 
-inline FrameSettings makeSettings(Mode mode, std::uint64_t mark = 0) {
-    FrameSettings settings;
-    settings.mode = mode;
-    settings.mark = mark;
-    return settings;
-}
-
-inline ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {96, 96}, 8000); }
-
-inline Eye turned(Eye eye, double radians) {
-    eye.world_from_camera.orientation =
-        eye.world_from_camera.orientation * glm::angleAxis(radians, glm::dvec3(0, 1, 0));
-    return eye;
-}
 // An eye that looks away from everything.
 inline Eye awayFrom(const Eye& eye) { return turned(eye, 3.1); }
 
@@ -36,7 +22,7 @@ inline Eye ofSize(Eye eye, glm::uvec2 size_px) {
 }
 
 struct Atelier : Gpu {
-    const ViewedScene view = viewAtelier();
+    const ViewedScene view = viewBuiltin("builtin:atelier", {96, 96}, 8000);
     const GpuScene scene{context(), view.scene};
 };
 

@@ -19,6 +19,20 @@ inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
             size_px};
 }
 
+// The eye after a turn about its own up axis.
+inline Eye turned(Eye eye, double radians) {
+    eye.world_from_camera.orientation =
+        eye.world_from_camera.orientation * glm::angleAxis(radians, glm::dvec3(0, 1, 0));
+    return eye;
+}
+
+inline std::size_t tileCount(glm::uvec2 size_px) {
+    return std::size_t{(size_px.x + 15) / 16} * ((size_px.y + 15) / 16);
+}
+inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
+    return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
+}
+
 // Each is made only once, since baking the atelier's light takes longer than many tests.
 inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
     static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
@@ -27,6 +41,17 @@ inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std:
         found = made.emplace(std::pair(name, splats), makeBuiltin(name, splats)).first;
     }
     return {name, found->second, eyeOf(*builtinView(name), size_px)};
+}
+
+inline ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) {
+    return viewBuiltin("builtin:atelier", size_px, 20000);
+}
+
+// The same as a headset sees it, at wide angles.
+inline ViewedScene viewWide(glm::uvec2 size_px, std::uint64_t splats = 20000) {
+    ViewedScene view = viewBuiltin("builtin:atelier", size_px, splats);
+    view.eye.intrinsics = intrinsicsFromAngles({-0.9, 0.8, 0.75, -0.85}, size_px);
+    return view;
 }
 
 // A cloud around the eye: near and far, through the near plane, thin and long, huge, tiny, and edge-on to

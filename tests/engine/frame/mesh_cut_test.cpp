@@ -21,37 +21,23 @@ std::vector<double> planeAt(const Eye& eye, const glm::dvec3& normal, double dis
 
 // A cloud in front of the eye.
 Scene makeMist(std::size_t splats, bool gaussians) {
-    Scene scene;
-    scene.name = "mist";
     std::mt19937 random(7);
-    const auto draw = [&](float low, float high) {
-        return std::uniform_real_distribution<float>(low, high)(random);
+    const auto draw = [&](double low, double high) {
+        return static_cast<float>(drawBetween(random, low, high));
     };
+    std::vector<Splat> made;
+    std::vector<float> thicknesses;
     for (std::size_t i = 0; i < splats; ++i) {
-        scene.positions.emplace_back(draw(-1.5f, 1.5f), draw(-1.2f, 1.2f), draw(1.5f, 4.5f));
-        scene.rotations.push_back(
-            glm::normalize(glm::quat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1))));
-        scene.scales.emplace_back(draw(0.05f, 0.3f), draw(0.05f, 0.3f));
-        if (gaussians) { scene.thicknesses.push_back(draw(0.01f, 0.05f)); }
-        scene.opacities.push_back(draw(0.1f, 0.7f));
-        for (int channel = 0; channel < 3; ++channel) { scene.sh.push_back(draw(-1.0f, 1.5f)); }
+        made.push_back({{draw(-1.5, 1.5), draw(-1.2, 1.2), draw(1.5, 4.5)},
+                        glm::normalize(glm::quat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1))),
+                        {draw(0.05, 0.3), draw(0.05, 0.3)},
+                        draw(0.1, 0.7),
+                        {draw(0.2, 0.9), draw(0.2, 0.9), draw(0.2, 0.9)}});
+        thicknesses.push_back(draw(0.01, 0.05));
     }
+    Scene scene = makeScene(made);
+    if (gaussians) { scene.thicknesses = thicknesses; }
     return scene;
-}
-
-// The number of pixels that differ from the twin's by more than `most` in a channel.
-int countOff(const Image& seen, const reference::Picture& twin, double most) {
-    int off = 0;
-    for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
-        double worst = 0.0;
-        for (int c = 0; c < 4; ++c) {
-            worst = std::max(worst,
-                             std::abs(static_cast<double>(seen.values[4 * i + static_cast<std::size_t>(c)]) -
-                                      twin.rgba[i][c]));
-        }
-        off += worst > most ? 1 : 0;
-    }
-    return off;
 }
 
 TEST_CASE_FIXTURE(Gpu,
@@ -67,8 +53,7 @@ TEST_CASE_FIXTURE(Gpu,
             const std::array<Eye, 2> pair = stereoPair(eye, 0.063);
             const std::vector<Eye> eyes =
                 mode == Mode::kMono ? std::vector<Eye>{eye} : std::vector<Eye>{pair.begin(), pair.end()};
-            FrameSettings settings;
-            settings.mode = mode;
+            FrameSettings settings = makeSettings(mode);
             settings.background = glm::dvec3(0.1, 0.2, 0.3);
             std::array<std::vector<double>, 2> planes;
             std::array<Buffer, 2> meshes;
@@ -93,8 +78,8 @@ TEST_CASE_FIXTURE(Gpu,
                 INFO("mode ", static_cast<int>(mode), ", gaussians ", gaussians, ", eye ", e);
                 // A splat that crosses the plane in the middle of a pixel may fall on either side of it by
                 // rounding.
-                CHECK(countOff(seen, cut, 2e-3) <= 2);
-                CHECK(countOff(seen, whole, 2e-2) > 3000);
+                CHECK(compare(seen, toImage(cut), 4, 2e-3).off <= 2);
+                CHECK(compare(seen, toImage(whole), 4, 2e-2).off > 9000);
             }
         }
     }
@@ -106,8 +91,7 @@ TEST_CASE_FIXTURE(Gpu,
     const GpuScene scene(context(), mist);
     KeptFrame frame(context(), scene);
     const std::vector<Eye> eyes{{{}, intrinsicsFromFovX(1.0, {40, 30}), {40, 30}}};
-    FrameSettings settings;
-    settings.mode = Mode::kMono;
+    FrameSettings settings = makeSettings(Mode::kMono);
     frame.render(eyes, settings);
     const std::vector<float> whole = frame.readPicture(0).values;
     for (const float stored : {kOffset, kOffset + 4.0f * kScale}) {  // infinitely far away; at 0.25

@@ -4,29 +4,21 @@
 
 SUITE(resident_scene) {
 
-FrameSettings makeSettings(Mode mode) {
-    FrameSettings settings;
-    settings.mode = mode;
-    settings.keep_history = true;
-    return settings;
-}
-
-ViewedScene viewAtelier(glm::uvec2 size_px = {96, 80}) {
-    ViewedScene view = test::viewBuiltin("builtin:atelier", size_px, 20000);
-    view.scene = test::inMortonOrder(view.scene);
+// In Morton's order.
+ViewedScene viewOrdered(glm::uvec2 size_px = {96, 80}) {
+    ViewedScene view = viewAtelier(size_px);
+    view.scene = inMortonOrder(view.scene);
     return view;
 }
 
 struct Atelier : Gpu {
-    const ViewedScene view = viewAtelier();
+    const ViewedScene view = viewOrdered();
 };
 
 std::vector<Eye> eyesFor(Mode mode, const Eye& middle, double cant = 0.0) {
     if (mode == Mode::kMono) { return {middle}; }
-    std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
-    eyes[1].world_from_camera.orientation =
-        eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
-    return {eyes.begin(), eyes.end()};
+    const std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
+    return {eyes[0], turned(eyes[1], cant)};
 }
 
 // The values of each eye's picture.
@@ -45,7 +37,7 @@ std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     std::vector<Scene> some;
     for (std::size_t p = 0; p < parts; ++p) {
         const std::size_t first = p * scene.size() / parts, end = (p + 1) * scene.size() / parts;
-        some.push_back(test::splatsOf(scene, first, end - first));
+        some.push_back(splatsOf(scene, first, end - first));
     }
     return some;
 }
@@ -58,7 +50,7 @@ void checkPagesAreTheScene(const Context& context, const Scene& in_order, const 
     const GpuScene whole(context, in_order);
     for (const Mode mode : modes) {
         INFO("mode ", static_cast<int>(mode), ", cant ", cant);
-        const test::WholeInPages pages(context, in_order, 7);
+        const WholeInPages pages(context, in_order, 7);
         KeptFrame frame(context, pages.resident.scene());
         const auto other = StereoFrame::beside(frame);
         other->show(whole);
@@ -74,29 +66,29 @@ void checkPagesAreTheScene(const Context& context, const Scene& in_order, const 
 }
 
 TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte") {
-    const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
+    const ViewedScene view = viewOrdered(), gaussians = viewGaussians({96, 80}, true);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kPaper}, 0.0);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kTemporal}, 0.05);
-    checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye,
-                          std::array{Mode::kMono}, 0.0);
+    checkPagesAreTheScene(context(), inMortonOrder(gaussians.scene), gaussians.eye, std::array{Mode::kMono},
+                          0.0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte, in every mode" *
-                           test::nightly()) {
-    const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
+                           nightly()) {
+    const ViewedScene view = viewOrdered(), gaussians = viewGaussians({96, 80}, true);
     checkPagesAreTheScene(context(), view.scene, view.eye, kModes, 0.0);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::span(kModes).subspan(1), 0.05);
-    checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
+    checkPagesAreTheScene(context(), inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
 }
 
 TEST_CASE_FIXTURE(Gpu,
                   "what is there is seen, and nothing else, whatever came and went, and hundreds of changes "
                   "take no memory") {
-    const ViewedScene view = viewAtelier({160, 144});
+    const ViewedScene view = viewOrdered({160, 144});
     constexpr std::uint32_t kParts = 16;
     const std::vector<Scene> parts = inParts(view.scene, kParts);
     ResidentScene resident(context(), traitsOf(view.scene),
-                           {.capacity_pages = test::pagesOf(view.scene.size()) + kParts});
+                           {.capacity_pages = pagesOf(view.scene.size()) + kParts});
     KeptFrame frame(context(), resident.scene());
     std::vector<std::optional<ResidentScene::Part>> there(parts.size());
     std::mt19937 random(5);
@@ -115,7 +107,7 @@ TEST_CASE_FIXTURE(Gpu,
         frame.renderAhead(eyes, makeSettings(Mode::kShared));
         if (step == 10) { bytes = resident.scene().bytes(); }
         if (step % 10 != 9) { continue; }
-        const auto pictures = test::picturesOf(frame);
+        const auto pictures = picturesOf(frame);
         std::vector<std::uint32_t> splats;
         for (std::size_t p = 0; p < kParts; ++p) {
             for (std::size_t i = p * view.scene.size() / kParts;
@@ -124,12 +116,12 @@ TEST_CASE_FIXTURE(Gpu,
             }
         }
         CHECK(resident.splatsShown() == splats.size());
-        const GpuScene whole(context(), test::splatsOf(view.scene, splats));
+        const GpuScene whole(context(), splatsOf(view.scene, splats));
         const auto other = StereoFrame::beside(frame);
         other->show(whole);
         other->render(eyes, makeSettings(Mode::kShared));
         // Splats of equal depth are ordered by their places in memory, which differ.
-        CHECK(test::psnrDb(pictures, test::picturesOf(*other)) >= 100.0);
+        CHECK(psnrDb(pictures, picturesOf(*other)) >= 100.0);
     }
     frame.finish();
     CHECK(resident.scene().bytes() == bytes);
@@ -141,7 +133,7 @@ TEST_CASE_FIXTURE(Gpu,
 }
 
 TEST_CASE_FIXTURE(Atelier, "a fade multiplies opacities, and at 0 nothing is seen or culled") {
-    test::WholeInPages pages(context(), view.scene);
+    WholeInPages pages(context(), view.scene);
     KeptFrame frame(context(), pages.resident.scene());
     const std::vector<Eye> eyes{view.eye};
     for (const float fade : {1.0f, 0.37f, 0.0f, 0.9f}) {
@@ -159,7 +151,7 @@ TEST_CASE_FIXTURE(Atelier, "a fade multiplies opacities, and at 0 nothing is see
 
 TEST_CASE_FIXTURE(Atelier,
                   "a part that is longer than what a frame may bring is seen once all of it is there") {
-    const std::uint32_t pages = test::pagesOf(view.scene.size());
+    const std::uint32_t pages = pagesOf(view.scene.size());
     ResidentScene resident(context(), traitsOf(view.scene),
                            {.capacity_pages = pages, .most_bytes_a_frame = 1});
     const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
@@ -182,7 +174,7 @@ TEST_CASE_FIXTURE(Atelier,
 }
 
 TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused, and the rest stays") {
-    const std::uint32_t pages = test::pagesOf(view.scene.size());
+    const std::uint32_t pages = pagesOf(view.scene.size());
     CHECK_THROWS_AS(ResidentScene(context(), traitsOf(view.scene), {.capacity_pages = 0}), Error);
     ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = pages + 1});
     const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
@@ -193,12 +185,12 @@ TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused,
     CHECK(resident.add(PackedPages(view.scene, 0, gpu::kPageSplats, resident.traits())).has_value());
     resident.remove(part);
     CHECK(resident.add(std::move(more)).has_value());
-    CHECK_THROWS_AS(PackedPages(test::viewGaussians({16, 16}, false).scene, resident.traits()), Error);
+    CHECK_THROWS_AS(PackedPages(viewGaussians({16, 16}, false).scene, resident.traits()), Error);
 }
 
 TEST_CASE_FIXTURE(
     Gpu, "colours of fewer SH bands than the scene's are as they are, those of more lose the higher ones") {
-    ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 80}, 4000);
+    ViewedScene view = viewBuiltin("builtin:atelier", {96, 80}, 4000);
     REQUIRE(view.scene.sh_degree > 0);
     Scene flat = view.scene;
     LoadNotes notes;
@@ -207,7 +199,7 @@ TEST_CASE_FIXTURE(
     const auto wanted = render(other, {view.eye}, makeSettings(Mode::kMono));
     for (const auto& [scene, traits] :
          {std::pair(&flat, traitsOf(view.scene)), std::pair(&view.scene, traitsOf(flat))}) {
-        ResidentScene resident(context(), traits, {.capacity_pages = test::pagesOf(scene->size())});
+        ResidentScene resident(context(), traits, {.capacity_pages = pagesOf(scene->size())});
         REQUIRE(resident.add(PackedPages(*scene, traits)).has_value());
         other.show(resident.scene());
         CHECK(render(other, {view.eye}, makeSettings(Mode::kMono)) == wanted);
@@ -215,7 +207,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(Atelier, "kernels that are made ahead leave what has come to the frame that is drawn") {
-    const test::WholeInPages pages(context(), view.scene);
+    const WholeInPages pages(context(), view.scene);
     KeptFrame frame(context(), pages.resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kTemporal, view.eye);
     frame.makeKernels(eyes, makeSettings(Mode::kTemporal));
@@ -231,10 +223,9 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     vk::PhysicalDeviceTimelineSemaphoreFeatures waits_for_host(VK_TRUE);
     const Context context(
         {.device = {}, .validation = true, .max_allocation_bytes = 0, .device_features = &waits_for_host});
-    const ViewedScene view = viewAtelier();
+    const ViewedScene view = viewOrdered();
     const std::vector<Scene> parts = inParts(view.scene, 4);
-    ResidentScene resident(context, traitsOf(view.scene),
-                           {.capacity_pages = test::pagesOf(view.scene.size()) + 4});
+    ResidentScene resident(context, traitsOf(view.scene), {.capacity_pages = pagesOf(view.scene.size()) + 4});
     std::vector<ResidentScene::Part> there;
     for (const Scene& part : parts) {
         there.push_back(resident.add(PackedPages(part, resident.traits())).value());
@@ -275,7 +266,7 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
 TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is cut short for it") {
     const std::vector<Scene> parts = inParts(view.scene, 8);
     ResidentScene resident(context(), traitsOf(view.scene),
-                           {.capacity_pages = test::pagesOf(view.scene.size()) + 8});
+                           {.capacity_pages = pagesOf(view.scene.size()) + 8});
     KeptFrame frame(context(), resident.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     for (std::size_t step = 0; step < 24; ++step) {
@@ -290,7 +281,7 @@ TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is 
 TEST_CASE_FIXTURE(Gpu,
                   "where a part is exchanged, pictures that are made from their histories are right again "
                   "within some frames") {
-    const ViewedScene view = viewAtelier({160, 144});
+    const ViewedScene view = viewOrdered({160, 144});
     // What is in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
     Scene other = parts[5];
@@ -298,7 +289,7 @@ TEST_CASE_FIXTURE(Gpu,
     for (const bool fades : {false, true}) {
         CAPTURE(fades);
         ResidentScene resident(context(), traitsOf(view.scene),
-                               {.capacity_pages = test::pagesOf(view.scene.size()) + 24});
+                               {.capacity_pages = pagesOf(view.scene.size()) + 24});
         std::vector<ResidentScene::Part> there;
         for (const Scene& part : parts) {
             there.push_back(resident.add(PackedPages(part, resident.traits())).value());
@@ -310,13 +301,13 @@ TEST_CASE_FIXTURE(Gpu,
         int step = 0;
         const auto go = [&](StereoFrame& frame, Mode mode) {
             frame.render(eyesFor(mode, eye), makeSettings(mode));
-            return test::picturesOf(frame);
+            return picturesOf(frame);
         };
         const auto psnrs = [&] {
             eye.world_from_camera.position.x = view.eye.world_from_camera.position.x + 0.002 * ++step;
             const auto shown = go(first, Mode::kTemporal), too = go(*second, Mode::kTemporal),
                        wanted = go(*full, Mode::kShared);
-            return std::array{test::psnrDb(shown, wanted), test::psnrDb(too, wanted)};
+            return std::array{psnrDb(shown, wanted), psnrDb(too, wanted)};
         };
         std::array<double, 2> before{}, after{};
         for (int frame = 0; frame < 12; ++frame) { before = psnrs(); }
@@ -340,16 +331,16 @@ TEST_CASE_FIXTURE(Gpu,
 
 TEST_CASE_FIXTURE(
     Gpu, "of a scene that is seen in part, a frame looks at the pages that may be seen, and says how many") {
-    ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 96}, 100000);
-    view.scene = test::inMortonOrder(view.scene);
-    const std::uint32_t pages = test::pagesOf(view.scene.size());
+    ViewedScene view = viewBuiltin("builtin:atelier", {96, 96}, 100000);
+    view.scene = inMortonOrder(view.scene);
+    const std::uint32_t pages = pagesOf(view.scene.size());
     std::vector<reference::Page> bounds;
     for (std::uint32_t p = 0; p < pages; ++p) {
         const std::size_t first = std::size_t{p} * gpu::kPageSplats;
         bounds.push_back(reference::boundPage(
             view.scene, first, std::min<std::size_t>(gpu::kPageSplats, view.scene.size() - first)));
     }
-    const test::WholeInPages whole(context(), view.scene, 50);
+    const WholeInPages whole(context(), view.scene, 50);
     KeptFrame frame(context(), whole.resident.scene());
     for (const double zoom : {1.0, 2.0, 8.0, 16.0}) {
         CAPTURE(zoom);

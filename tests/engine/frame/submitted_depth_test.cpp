@@ -65,21 +65,17 @@ BetweenWalls countBetween(Gpu& gpu, StereoFrame& frame, const Eye& eye, int side
 TEST_CASE_FIXTURE(Gpu,
                   "a pixel at a wall's edge has the depth of that wall or of the one behind, in tiles that "
                   "are rendered and reprojected") {
-    const ViewedScene view = test::viewBuiltin("builtin:step-edge", {192, 192});
+    const ViewedScene view = viewBuiltin("builtin:step-edge", {192, 192});
     const GpuScene scene(context(), view.scene);
     for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
         KeptFrame frame(context(), scene);
-        FrameSettings settings;
-        settings.mode = mode;
-        settings.keep_history = hasHistory(mode);
+        FrameSettings settings = makeSettings(mode);
         settings.keep_depth = settings.keep_both_depths = true;
         settings.half_floats = true;
         std::array<Eye, 2> eyes{};
         for (int step = 0; step < 6; ++step) {
-            Eye eye = view.eye;
-            eye.world_from_camera.orientation =
-                eye.world_from_camera.orientation * glm::angleAxis(0.01 * step, glm::dvec3(0, 1, 0));
+            Eye eye = turned(view.eye, 0.01 * step);
             eye.world_from_camera.position.x += 0.004 * step;
             eyes = stereoPair(eye, 0.063);
             frame.render(eyes, settings);

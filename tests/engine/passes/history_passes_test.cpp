@@ -12,17 +12,17 @@ SUITE(history_passes) {
 using reference::TileKind;
 
 const ViewedScene& atelier() {
-    static const ViewedScene view = test::viewBuiltin("builtin:atelier", {150, 110}, 20000);
+    static const ViewedScene view = viewBuiltin("builtin:atelier", {150, 110}, 20000);
     return view;
 }
 const ViewedScene& fence() {
-    static const ViewedScene view = test::viewBuiltin("builtin:fence", {150, 110});
+    static const ViewedScene view = viewBuiltin("builtin:fence", {150, 110});
     return view;
 }
 // Rows of a multiple of four pixels are written four at a time, and with half floats a block's whole row at
 // once.
 const ViewedScene& evenFence() {
-    static const ViewedScene view = test::viewBuiltin("builtin:fence", {160, 112});
+    static const ViewedScene view = viewBuiltin("builtin:fence", {160, 112});
     return view;
 }
 
@@ -33,7 +33,7 @@ std::size_t countOtherDepths(const Image& depths, const reference::History& hist
         const double inverse_depth = history.pixels[i] ? history.pixels[i]->inverse_depth : 0.0;
         const double expected = inverse_depth > 0.0 ? history.rgba[i].a / inverse_depth : 0.0;
         // Depths are half floats.
-        other += test::isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;
+        other += isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;
     }
     return other;
 }
@@ -61,10 +61,10 @@ struct Way {
     bool half_floats, hides;
     double cant = 0.0;
 
-    [[nodiscard]] test::WalkSettings settings() const {
-        test::WalkSettings settings{.half_floats = half_floats, .cant = cant};
+    [[nodiscard]] WalkSettings settings() const {
+        WalkSettings settings{.half_floats = half_floats, .cant = cant};
         if (!hides) { return settings; }
-        settings.hidden.fill(std::vector<std::uint8_t>(test::tileCount(view.eye.size_px), 0));
+        settings.hidden.fill(std::vector<std::uint8_t>(tileCount(view.eye.size_px), 0));
         for (auto& tiles : settings.hidden) { tiles[0] = tiles[9] = tiles[33] = tiles[34] = 1; }
         return settings;
     }
@@ -73,7 +73,7 @@ struct Way {
 // Pictures that are reprojected only from the previous ones.
 void checkWarped(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", hides ", way.hides);
-    const test::WalkSettings settings = way.settings();
+    const WalkSettings settings = way.settings();
     const auto& hidden = settings.hidden;
     HistoryWalk walk(gpu, way.view, settings);
     walk.go(0.0, 0.0);
@@ -98,20 +98,20 @@ void checkWarped(Gpu& gpu, const Way& way) {
     CHECK(-10.0 * std::log10(all.squares / static_cast<double>(all.pixels)) >= 55.0);
     CHECK(one_by_one > blocks / 20);
     CHECK(one_by_one < blocks - blocks / 20);
-    CHECK(test::share(all.other_depths, all.pixels) <= 0.001);
-    CHECK(test::share(all.other_spreads, all.pixels) <= 0.001);
-    CHECK(test::share(all.other_tiles, all.tiles) <= 0.005);
-    CHECK(test::share(all.other_gradients, all.tiles) <= 0.005);
-    CHECK(test::share(all.other_grown, all.quarters) <= 0.005);
-    CHECK(test::share(all.other_errors, all.quarters) <= 0.005);
-    CHECK(test::share(all.other_growth, all.quarters) <= 0.005);
-    CHECK(test::isNear(all.grown, all.twin_grown, 0.001, 0.0));
+    CHECK(share(all.other_depths, all.pixels) <= 0.001);
+    CHECK(share(all.other_spreads, all.pixels) <= 0.001);
+    CHECK(share(all.other_tiles, all.tiles) <= 0.005);
+    CHECK(share(all.other_gradients, all.tiles) <= 0.005);
+    CHECK(share(all.other_grown, all.quarters) <= 0.005);
+    CHECK(share(all.other_errors, all.quarters) <= 0.005);
+    CHECK(share(all.other_growth, all.quarters) <= 0.005);
+    CHECK(isNear(all.grown, all.twin_grown, 0.001, 0.0));
 }
 
 // Pictures without a history, and what they leave for later ones.
 void checkFirst(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", half floats ", way.half_floats, ", cant ", way.cant, ", hides ", way.hides);
-    const test::WalkSettings settings = way.settings();
+    const WalkSettings settings = way.settings();
     const auto& hidden = settings.hidden;
     HistoryWalk walk(gpu, way.view, settings);
     const FrameResult result = walk.go(0.0, 0.2);
@@ -120,7 +120,7 @@ void checkFirst(Gpu& gpu, const Way& way) {
     for (const std::size_t e : {0, 1}) {
         const EyeOnDevice made = walk.read(static_cast<int>(e));
         const Eye& eye = walk.eyes()[e];
-        CHECK(test::toImage(eye.size_px, made.history.rgba).values == full[e].values);
+        CHECK(toImage(eye.size_px, made.history.rgba).values == full[e].values);
         const auto isHidden = [&](std::size_t tile) { return !hidden[e].empty() && hidden[e][tile] != 0; };
         std::uint64_t pairs = 0;
         for (std::size_t t = 0; t < made.history.tiles.size(); ++t) {
@@ -131,7 +131,7 @@ void checkFirst(Gpu& gpu, const Way& way) {
             CHECK(tile.growth == std::array<double, 4>{});
             CHECK(tile.errors == std::array<double, 4>{});
         }
-        CHECK(pairs == test::countOf(result, e == 0 ? "tile_pairs_left" : "tile_pairs_right"));
+        CHECK(pairs == countOf(result, e == 0 ? "tile_pairs_left" : "tile_pairs_right"));
         reference::Settings twin_settings{.background = settings.background};
         twin_settings.inverse_depth_moments = true;
         const reference::History twin =
@@ -139,19 +139,18 @@ void checkFirst(Gpu& gpu, const Way& way) {
                                  std::vector<std::uint64_t>(made.history.tiles.size()));
         for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
             const auto &a = made.history.pixels[i], &b = twin.pixels[i];
-            if (isHidden(test::tileOf(i, eye.size_px))) { continue; }  // nobody looks there
+            if (isHidden(tileOf(i, eye.size_px))) { continue; }  // nobody looks there
             ++pixels;
             const bool same = a.has_value() == b.has_value();
-            other_depths +=
-                same && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)) ? 0 : 1;
+            other_depths += same && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)) ? 0 : 1;
             // On a single surface, the spread is only rounding.
             constexpr std::uint32_t kRounding = 12;
             other_spreads +=
                 same && (!a || std::max(a->spread, kRounding) == std::max(b->spread, kRounding)) ? 0 : 1;
         }
     }
-    CHECK(test::share(other_depths, pixels) <= 0.01);
-    CHECK(test::share(other_spreads, pixels) <= 0.02);
+    CHECK(share(other_depths, pixels) <= 0.01);
+    CHECK(share(other_spreads, pixels) <= 0.02);
 }
 
 TEST_CASE_FIXTURE(Gpu, "warp_history and warp_pixels make the twin's picture, and expect the twin's errors") {
@@ -198,7 +197,7 @@ TEST_CASE_FIXTURE(Gpu,
 
 TEST_CASE_FIXTURE(
     Gpu, "pictures from histories and without are so in floats and half floats, whatever lenses hide" *
-             test::nightly()) {
+             nightly()) {
     for (const bool hides : {false, true}) {
         checkWarped(*this, {atelier(), false, hides});
         checkWarped(*this, {evenFence(), true, hides});
@@ -213,7 +212,7 @@ TEST_CASE_FIXTURE(
 double widerSquares(const ViewedScene& view, const Eye& eye, const reference::HistoryTile& tile,
                     std::size_t index) {
     const reference::Settings settings{.background = {0.1, 0.2, 0.3}};
-    test::TwinStages stages({view.name, view.scene, eye}, settings);
+    TwinStages stages({view.name, view.scene, eye}, settings);
     const auto picture = [&] {
         return reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, eye, settings);
     };
@@ -226,8 +225,7 @@ double widerSquares(const ViewedScene& view, const Eye& eye, const reference::Hi
 
 TEST_CASE_FIXTURE(
     Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
-    const ViewedScene gaussians = test::viewGaussians({200, 150}, false),
-                      dimmed = test::viewGaussians({200, 150}, true);
+    const ViewedScene gaussians = viewGaussians({200, 150}, false), dimmed = viewGaussians({200, 150}, true);
     for (const ViewedScene* view : {&atelier(), &fence(), &gaussians, &dimmed}) {
         CAPTURE(view->name);
         // Two walks are equal so far; one of them renders tiles again in the last frame.
@@ -257,8 +255,8 @@ TEST_CASE_FIXTURE(
                 errors.push_back(made[e].errors[t] / kErrorSteps);
                 picture_cost += costs[e][t];
                 CHECK(costs[e][t] == reference::costOf(warped[e].history.tiles[t]));
-                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].history.tiles[t]), 1e-5,
-                                   1.0 / kErrorSteps));
+                CHECK(isNear(errors[t], reference::worthOf(warped[e].history.tiles[t]), 1e-5,
+                             1.0 / kErrorSteps));
             }
             kinds[e].assign(costs[e].size(), TileKind::kNone);
             prices[e] = reference::price(kinds[e], errors, costs[e]);
@@ -270,7 +268,7 @@ TEST_CASE_FIXTURE(
         double left = 0.0, wider = 0.0;
         reference::SquaresOfTiles sums;
         for (std::size_t e = 0; e < 2; ++e) {
-            CHECK(made[e].kinds == test::kindsOf(kinds[e]));
+            CHECK(made[e].kinds == kindsOf(kinds[e]));
             // The full render is the device's own, so the twin's measurement is exact.
             reference::Picture full{walk.eyes()[e].size_px, made[e].history.rgba, {}, {}, {}};
             full.inverse_depth = full.inverse_depth_squared = std::vector<double>(full.rgba.size(), 0.0);
@@ -289,7 +287,7 @@ TEST_CASE_FIXTURE(
                 for (std::size_t q = 0; q < 4; ++q) {
                     // Up to a step for each thread's sum.
                     CHECK(std::abs(a.growth[q] - b.growth[q]) <= 1e-3 * b.growth[q] + 2e-4);
-                    CHECK(test::isNear(a.errors[q], b.errors[q], 1e-6, 0.0));
+                    CHECK(isNear(a.errors[q], b.errors[q], 1e-6, 0.0));
                     rendered += kinds[e][t] == TileKind::kPredicted && a.growth[q] > 1e-3 ? 1 : 0;
                 }
             }
@@ -298,9 +296,8 @@ TEST_CASE_FIXTURE(
         CHECK(rendered > 40);
         const double all = 2.0 * 768.0 * static_cast<double>(kinds[0].size());
         CHECK(wider > 0.0);
-        CHECK(test::isNear(result.half_loss, wider * gpu::kMeasuredParts / all, 0.01, 1e-6));
-        CHECK(test::isNear(result.warp_error, left / all * std::min(sums.found / sums.expected, 1.0), 0.01,
-                           1e-6));
+        CHECK(isNear(result.half_loss, wider * gpu::kMeasuredParts / all, 0.01, 1e-6));
+        CHECK(isNear(result.warp_error, left / all * std::min(sums.found / sums.expected, 1.0), 0.01, 1e-6));
     }
 }
 
@@ -308,7 +305,7 @@ TEST_CASE_FIXTURE(
     Gpu, "every tile of a picture that moves has its turn, also where nothing is expected to go wrong") {
     // Bars across the view, alternately near and far, in the background's colour: no block has a single
     // depth, and none looks wrong.
-    std::vector<test::Splat> splats;
+    std::vector<Splat> splats;
     for (int bar = -7; bar <= 7; ++bar) {
         const float z = bar % 2 == 0 ? 1.0f : 1.5f;
         splats.push_back({{0.0f, 0.06f * z * static_cast<float>(bar), z},
@@ -317,7 +314,7 @@ TEST_CASE_FIXTURE(
                           0.99f,
                           glm::vec3(0.5f)});
     }
-    const ViewedScene view{"bars", test::makeScene(splats), test::makeEye({96, 64})};
+    const ViewedScene view{"bars", makeScene(splats), makeEye({96, 64})};
     HistoryWalk walk(*this, view, {.background = glm::dvec3(0.5)});
     walk.go(0.0, 0.0);
     walk.go(5.0, 0.0);
@@ -325,7 +322,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE("what lies in a box is seen in its rectangle, also where the box reaches through the near plane") {
-    const Eye eye = test::makeOddEye({200, 150});
+    const Eye eye = makeOddEye({200, 150});
     const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
     std::mt19937 random(11);
     const auto draw = [&] { return drawUnit(random); };
@@ -359,7 +356,7 @@ TEST_CASE("what lies in a box is seen in its rectangle, also where the box reach
 TEST_CASE(
     "a box before the eye has a rectangle of its own size and the low-pass, one beside it or behind it has "
     "none") {
-    const Eye eye = test::makeEye({101, 101});
+    const Eye eye = makeEye({101, 101});
     const auto rectOf = [&](const glm::vec3& low, const glm::vec3& high) {
         const SceneChange box{low, high, 1.0f};
         return rectsOf({&box, 1}, eye, 0.2);
@@ -374,7 +371,7 @@ TEST_CASE(
 }
 
 TEST_CASE("more changes than a picture takes are joined, and none is lost") {
-    const Eye eye = test::makeEye({256, 256});
+    const Eye eye = makeEye({256, 256});
     std::vector<SceneChange> boxes;
     for (int i = 0; i < 1000; ++i) {
         const float x = -2.0f + 0.004f * static_cast<float>(i);
@@ -395,7 +392,7 @@ TEST_CASE("more changes than a picture takes are joined, and none is lost") {
 
 TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
     for (const glm::uvec2 size_px : {glm::uvec2(16, 16), glm::uvec2(200, 150), glm::uvec2(333, 47)}) {
-        Eye eye = test::makeOddEye(size_px);
+        Eye eye = makeOddEye(size_px);
         std::mt19937 random(2);
         const glm::uvec2 size_tiles = tilesOf(size_px);
         std::vector<gpu::HistoryTile> tiles(std::size_t{size_tiles.x} * size_tiles.y);
@@ -405,7 +402,7 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
             tile.age = static_cast<gpu::uint>(random() % 10);
             tile.growth = gpu::vec4(0.25f);
             for (int q = 0; q < 4; ++q) { tile.errors[q] = static_cast<float>(random() % 512) / 2048.0f; }
-            twin.push_back(test::tileOf(tile));
+            twin.push_back(tileOf(tile));
         }
         const std::vector<gpu::ChangedRect> rects = rectsOf(boxesAbout(eye, 60, 3), eye, 0.2);
         REQUIRE(rects.size() >= 3);

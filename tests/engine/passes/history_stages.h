@@ -79,14 +79,8 @@ public:
           frame_(gpu.context(), scene_) {}
 
     FrameResult go(double step, double budget, std::uint32_t measured_part = gpu::kMeasuredParts) {
-        Eye eye = view_.eye;
-        eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
-        eye.world_from_camera.orientation =
-            eye.world_from_camera.orientation *
-            glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
-        eyes_ = stereoPair(eye, 0.063);
-        glm::dquat& right = eyes_[kRight].world_from_camera.orientation;
-        right = right * glm::angleAxis(settings_.cant, glm::dvec3(0, 1, 0));
+        eyes_ = walkedEyes(view_.eye, step);
+        eyes_[kRight] = turned(eyes_[kRight], settings_.cant);
         FrameSettings settings = settingsOf(Mode::kTemporal, budget);
         settings.measured_part = measured_part;
         return frame_.render(eyes_, settings);
@@ -97,16 +91,14 @@ public:
         frame.render(eyes_, settingsOf(Mode::kShared, 0.0));
         return picturesOf(frame);
     }
-    EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
+    EyeOnDevice read(std::size_t eye) { return readEye(gpu_, frame_, static_cast<int>(eye), eyes_[eye]); }
     // The left eye's.
     Image readDepth() { return frame_.readDominantDepth(); }
     [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
 
 private:
     [[nodiscard]] FrameSettings settingsOf(Mode mode, double budget) const {
-        FrameSettings settings;
-        settings.mode = mode;
-        settings.keep_history = mode == Mode::kTemporal;
+        FrameSettings settings = makeSettings(mode);
         settings.stereo.budget = budget;
         settings.hidden_tiles = {settings_.hidden[0], settings_.hidden[1]};
         settings.background = settings_.background;

@@ -130,7 +130,7 @@ struct Culled {
 Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye, std::uint32_t eye_count,
                     const Kernel* other_kernel = nullptr) {
     const std::uint32_t count = device.scene.splatCount();
-    const std::size_t groups = test::pagesOf(count);
+    const std::size_t groups = pagesOf(count);
     const Kernel& kernel = other_kernel != nullptr
                                ? *other_kernel
                                : gpu.kernel(CullKernel{.splat_kind = device.scene.splatKind()});
@@ -180,14 +180,11 @@ std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& p
 // Runs cull_pages and cull from `count` places around each of the scenes.
 void checkPages(Gpu& gpu, int count) {
     std::size_t kept = 0, left_out = 0, splats_kept = 0, pages_left_out = 0;
-    std::vector<ViewedScene> scenes{test::viewBuiltin("builtin:atelier", {256, 192}, 20000),
-                                    test::viewCloud({200, 150})};
-    for (const bool antialiased : {false, true}) {
-        scenes.push_back(test::viewGaussians({200, 150}, antialiased));
-    }
+    std::vector<ViewedScene> scenes{viewBuiltin("builtin:atelier", {256, 192}, 20000), viewCloud({200, 150})};
+    for (const bool antialiased : {false, true}) { scenes.push_back(viewGaussians({200, 150}, antialiased)); }
     for (ViewedScene& view : scenes) {
         CAPTURE(view.name);
-        view.scene = test::inMortonOrder(view.scene);
+        view.scene = inMortonOrder(view.scene);
         const PackedPages packed(view.scene, traitsOf(view.scene));
         const std::vector<reference::Page> pages = boundPages(view.scene, packed);
 
@@ -245,7 +242,7 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     }
     for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
     const Buffer bit_buffer = gpu.upload("bits", bits), offset_buffer = gpu.upload("offsets", offsets),
-                 list = gpu.upload("list", std::vector{test::makeList(visible.size())});
+                 list = gpu.upload("list", std::vector{makeList(visible.size())});
     const Buffer keys = gpu.allocate<std::uint32_t>("keys", visible.size()),
                  splats = gpu.allocate<std::uint32_t>("splats", visible.size());
     gpu::CompactPass pass{};
@@ -272,9 +269,7 @@ TEST_CASE_FIXTURE(
     "cull_pages finds the twin's pages, up to a hair, and leaves none out with a splat that cull keeps") {
     checkPages(*this, 24);
 }
-TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * test::nightly()) {
-    checkPages(*this, 100);
-}
+TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * nightly()) { checkPages(*this, 100); }
 
 TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
     std::mt19937 random(3);
@@ -292,7 +287,7 @@ TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
                              .count = is_empty ? 0u : 5u});
             if (!is_empty && is_seen) { expected.push_back(p); }
         }
-        const Pages::Found found = Pages(*this, pages, gpu::kDiscs, {test::makeEye({64, 64})}).cull(0, 1);
+        const Pages::Found found = Pages(*this, pages, gpu::kDiscs, {makeEye({64, 64})}).cull(0, 1);
         CHECK(these(found.list, found.state.needed) == these(expected, expected.size()));
         const std::uint32_t groups = found.state.per_item.x * found.state.per_item.y * found.state.per_item.z;
         CHECK(groups >= expected.size());
@@ -313,7 +308,7 @@ TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for th
     for (const std::uint32_t shape : {gpu::kDiscs, gpu::kGaussians}) {
         const Kernel without_nan = withoutNan(*this, CullPagesKernel{.splat_kind = shape});
         for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
-            CHECK(Pages(*this, pages, shape, {test::makeEye({64, 64})}, kernel).cull(0, 1).list ==
+            CHECK(Pages(*this, pages, shape, {makeEye({64, 64})}, kernel).cull(0, 1).list ==
                   std::vector<std::uint32_t>{0, 1, 2});
         }
     }
@@ -321,11 +316,11 @@ TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for th
 
 TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-    const Eye eye = test::makeEye({64, 64});
+    const Eye eye = makeEye({64, 64});
     for (const bool is_gaussian : {false, true}) {
         CAPTURE(is_gaussian);
-        Scene scene = test::makeScene(
-            std::vector<test::Splat>(6, {{0, 0, 2}, {1, 0, 0, 0}, {0.1f, 0.1f}, 0.9f, glm::vec3(0.5f)}));
+        Scene scene =
+            makeScene(std::vector<Splat>(6, {{0, 0, 2}, {1, 0, 0, 0}, {0.1f, 0.1f}, 0.9f, glm::vec3(0.5f)}));
         if (is_gaussian) { scene.thicknesses.assign(6, 0.1f); }
         scene.positions[1].x = scene.positions[2].z = scene.scales[3].y = scene.opacities[4] =
             scene.rotations[5].x = kNone;
@@ -340,7 +335,7 @@ TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
 TEST_CASE_FIXTURE(
     Gpu,
     "cull misses no splat that the twin sees, keeps hardly one more, and for two eyes what either sees") {
-    for (const auto& [view, twin] : test::stagedScenes()) {
+    for (const auto& [view, twin] : stagedScenes()) {
         CAPTURE(view.name);
         Eye other = view.eye;
         other.world_from_camera.orientation =
@@ -384,14 +379,13 @@ TEST_CASE_FIXTURE(Gpu,
             const double unit =
                 settings.order_from
                     ? depth
-                    : test::distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
-            const auto [least, most] =
-                test::depthsOfKey(compacted.keys[i], static_cast<float>(settings.near));
-            worst = std::max(worst, std::max(least - depth, depth - most) / (test::kEpsilon * unit));
+                    : distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
+            const auto [least, most] = depthsOfKey(compacted.keys[i], static_cast<float>(settings.near));
+            worst = std::max(worst, std::max(least - depth, depth - most) / (kEpsilon * unit));
         }
         CHECK(worst <= 8.0);  // measured: 2.4
     };
-    for (const auto& staged : test::stagedScenes()) {
+    for (const auto& staged : stagedScenes()) {
         ViewedScene view = staged.view;
         CAPTURE(view.name);
         check(view, kSettings);

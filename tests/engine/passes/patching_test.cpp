@@ -37,7 +37,7 @@ public:
     [[nodiscard]] const Image& full() const { return full_; }
 
 private:
-    test::KeptFrame frame_;
+    KeptFrame frame_;
     std::array<Eye, 2> eyes_;
     Side dominant_;
     Image full_;
@@ -96,7 +96,7 @@ std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::
 // How much the third source of error gains at the same budget.
 void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array<Eye, 2>& eyes, Side dominant,
                     double budget) {
-    Scenery scenery(gpu, test::makeScene(splats), eyes, dominant);
+    Scenery scenery(gpu, makeScene(splats), eyes, dominant);
     FrameSettings settings = makeSettings(Mode::kPredicted);
     settings.stereo.budget = budget;
     const Outcome with = scenery.render(settings);
@@ -118,10 +118,10 @@ double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
 // Over the right eye's tiles near its gaze.
 double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze& gaze) {
     std::vector<std::uint32_t> near;
-    for (std::size_t t = 0; t < test::tileCount(eye.size_px); ++t) {
+    for (std::size_t t = 0; t < tileCount(eye.size_px); ++t) {
         near.push_back(angleOf(eye, t, gaze) <= gaze.clear_rad ? 1 : 0);
     }
-    return compare(test::keepTiles(made, near), test::keepTiles(full, near)).psnrDb();
+    return compare(keepTiles(made, near), keepTiles(full, near)).psnrDb();
 }
 
 bool isChosen(const AffiliatedFrame& made, std::size_t tile) {
@@ -163,7 +163,7 @@ TEST_CASE_FIXTURE(Gpu,
     splats.clear();
     addWall(splats, 8.0f, 3.5f, 0.07f);
     addVeil(splats, 0.4f, 0.032f, 60, 200);
-    Scenery both(*this, test::makeScene(splats), parallelEyes(0.064));
+    Scenery both(*this, makeScene(splats), parallelEyes(0.064));
     CHECK(countOf(both.render(Mode::kPredicted).made.result, "splats_newcomers") == 0);
 }
 
@@ -179,11 +179,11 @@ TEST_CASE_FIXTURE(Gpu,
             splats.push_back({{x, y, 1.0f}, {1, 0, 0, 0}, glm::vec2(0.008f), 0.97f, glm::vec3(0.7f)});
         }
     }
-    const auto fence = test::viewBuiltin("builtin:fence", kSizePx);
+    const auto fence = viewBuiltin("builtin:fence", kSizePx);
     for (const bool bars : {false, true}) {
         for (const Side dominant : {kLeft, kRight}) {
             INFO("bars ", bars, ", dominant ", static_cast<int>(dominant));
-            Scenery scenery(*this, bars ? fence.scene : test::makeScene(splats),
+            Scenery scenery(*this, bars ? fence.scene : makeScene(splats),
                             bars ? stereoPair(fence.eye, 0.12) : parallelEyes(0.12), dominant);
             const Outcome filled = scenery.render(Mode::kReproject);
             FrameSettings settings = makeSettings(Mode::kPaper);
@@ -225,7 +225,7 @@ TEST_CASE_FIXTURE(Gpu,
 }
 
 TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") {
-    const auto view = test::viewBuiltin("builtin:two-layers", kSizePx);
+    const auto view = viewBuiltin("builtin:two-layers", kSizePx);
     Scenery scenery(*this, view.scene, stereoPair(view.eye, 0.12));
     FrameSettings sparse = makeSettings(Mode::kPredicted);
     sparse.stereo.budget = 0.1;  // with more, moving would not pay in a scene this thin
@@ -243,14 +243,14 @@ TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") 
 TEST_CASE_FIXTURE(
     Gpu,
     "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
-    const auto view = test::viewBuiltin("builtin:atelier", kSizePx, 20000);
+    const auto view = viewBuiltin("builtin:atelier", kSizePx, 20000);
     const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.064);
     std::array<Eye, 2> outside = eyes;
     for (Eye& eye : outside) {
         eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(0, 0, 1000);
     }
     const GpuScene scene(context(), view.scene);
-    test::KeptFrame frame(context(), scene), plain(context(), scene);
+    KeptFrame frame(context(), scene), plain(context(), scene);
     const auto render = [&](const std::array<Eye, 2>& of, double budget = 0.22) {
         FrameSettings settings = makeSettings(Mode::kPredicted);
         settings.stereo.budget = budget;
@@ -289,8 +289,8 @@ TEST_CASE_FIXTURE(Gpu,
                   "where it is known where the eye looks fewer tiles are rendered again, none less about "
                   "that place, and it is as good there") {
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
-        const auto view = test::viewBuiltin("builtin:atelier", {384, 320}, 40000);
-        const auto eyes = test::headsetEyes(view.eye, canting_rad);
+        const auto view = viewBuiltin("builtin:atelier", {384, 320}, 40000);
+        const auto eyes = headsetEyes(view.eye, canting_rad);
         Scenery room(*this, view.scene, eyes);
         FrameSettings settings = makeSettings(Mode::kPredicted);
         settings.stereo.budget = 0.22;

@@ -21,7 +21,7 @@ struct FieldErrors {
 
     void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth,
               const ViewedScene& view, std::uint32_t i) {
-        const test::OpacityColour packed = test::unpack(splat);
+        const OpacityColour packed = unpack(splat);
         if (packed.has_reference != truth.low_pass) {
             ++other_kind;
             return;
@@ -32,17 +32,16 @@ struct FieldErrors {
         const glm::dvec3 position(view.scene.positions[i]),
             from_eye = position - view.eye.world_from_camera.position;
         // Rounding of the centre in camera space.
-        const double rounding = test::kEpsilon * test::distanceToRound(position, view.eye);
+        const double rounding = kEpsilon * distanceToRound(position, view.eye);
         const double z = truth.depth;
         if (truth.low_pass) {
             const glm::dvec2 c = (truth.reference_px - principal) / focal * z;
             for (int axis = 0; axis < 2; ++axis) {
                 // A position's own rounding, if it lies far from the scene's origin, and 2^-7 of the two
                 // floats' rounding.
-                const double coarse = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z +
-                                      test::kEpsilon * principal[axis];
-                note("reference_px", test::referenceOf(splat)[axis] - truth.reference_px[axis],
-                     coarse / 128.0);
+                const double coarse =
+                    focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + kEpsilon * principal[axis];
+                note("reference_px", referenceOf(splat)[axis] - truth.reference_px[axis], coarse / 128.0);
             }
             note("1/z", static_cast<double>(splat.inverse_depth) * z - 1.0, rounding / z);
         }
@@ -59,7 +58,7 @@ struct FieldErrors {
         const glm::quat& q = view.scene.rotations[i];
         const double delta = std::abs(glm::dot(glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z))[2], from_eye));
         const double scale = static_cast<double>(std::min(view.scene.scales[i].x, view.scene.scales[i].y));
-        const double row = rounding / delta * test::distanceToRound(position, view.eye) /
+        const double row = rounding / delta * distanceToRound(position, view.eye) /
                            (scale * delta * std::min(focal.x, focal.y));
         const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
         note("A", plane_error.x, row);
@@ -102,11 +101,11 @@ private:
             note("Gaussian perspective", error * sigma_px[axis] * truth.depth,
                  unit * climb * (1.0 + longest_px / std::sqrt(0.3)));
         }
-        note("dimmed opacity", test::unpack(splat).opacity / truth.opacity - 1.0, 1.1e-5 + unit);
+        note("dimmed opacity", unpack(splat).opacity / truth.opacity - 1.0, 1.1e-5 + unit);
     }
 
-    void noteColour(const test::OpacityColour& packed, const reference::ProjectedSplat& truth,
-                    const Scene& scene, std::uint32_t i) {
+    void noteColour(const OpacityColour& packed, const reference::ProjectedSplat& truth, const Scene& scene,
+                    std::uint32_t i) {
         // Half a step of 2^-15 in -log2(opacity) is 1.06e-5 of the opacity.
         if (!truth.gaussian) { note("opacity", packed.opacity / truth.opacity - 1.0, 1.1e-5); }
         // Half floats are off by up to 2^-11 of their value, in each coefficient and in the colour. No
@@ -135,8 +134,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const Kernel& kernel = gpu.kernel(BinKernel{.splat_kind = device.scene.splatKind()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
-    const test::ProjectedOnDevice projected =
-        test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
+    const ProjectedOnDevice projected = projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity),
                  ranks = gpu.allocate<gpu::uint>("ranks", capacity);
     gpu::BinPass pass{};
@@ -149,7 +147,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     pass.tiles = tiles.address<gpu::uint>();
     if (rank_bits == 0) { pass.ranks = ranks.address<gpu::uint>(); }
     pass.targets = projected.target.address<gpu::TargetState>();
-    pass.all_tiles = static_cast<gpu::uint>(test::tileCount(view.eye.size_px));
+    pass.all_tiles = static_cast<gpu::uint>(tileCount(view.eye.size_px));
     pass.rank_bits = rank_bits;
     gpu.run([&](Commands& commands) {
         commands.dispatchIndirect(kernel, pass, projected.list, offsetof(gpu::ListState, per_block));
@@ -200,16 +198,16 @@ TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times t
                                                {"Gaussian D", 4.0},
                                                {"Gaussian perspective", 2.0},
                                                {"dimmed opacity", 4.0}};
-    for (const auto& [view, twin] : test::stagedScenes()) {
+    for (const auto& [view, twin] : stagedScenes()) {
         CAPTURE(view.name);
         const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
-        const test::ProjectedOnDevice projected = test::projectOnDevice(*this, device, twin.order);
+        const ProjectedOnDevice projected = projectOnDevice(*this, device, twin.order);
         const auto splats = readBack<gpu::ProjectedSplat>(projected.splats, projected.count);
         const auto tile_sets = readBack<glm::uvec2>(projected.tile_sets, projected.count);
         FieldErrors errors;
         std::size_t compared = 0;
         for (std::size_t rank = 0; rank < splats.size(); ++rank) {
-            if (test::tilesIn(tile_sets[rank]) == 0) { continue; }  // splats that meet no tile are undefined
+            if (tilesIn(tile_sets[rank]) == 0) { continue; }  // splats that meet no tile are undefined
             errors.note(splats[rank], twin.splats[rank], view, twin.order[rank]);
             ++compared;
         }
@@ -224,7 +222,7 @@ TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times t
 }
 
 TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more, front to back") {
-    for (const auto& [view, twin] : test::stagedScenes()) {
+    for (const auto& [view, twin] : stagedScenes()) {
         CAPTURE(view.name);
         const std::vector<TilePair> pairs = binOnDevice(*this, view, twin);
         CHECK(binOnDevice(*this, view, twin, {}, 17) == pairs);
@@ -243,10 +241,11 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
         for (const TilePair& pair : missing) {
             CHECK(greatestAlpha(twin.splats[pair.splat], pair.tile, view.eye.size_px) <= 1.0001 / 255.0);
         }
-        // Discs that reach the eye's plane get every tile of their box, and the cloud is full of them
-        // (measured: 1.72).
-        CHECK(static_cast<double>(pairs.size()) <=
-              (view.name == "cloud" ? 2.0 : 1.05) * static_cast<double>(twin.pairs.size()));
+        // Outlines are widened by 1/64 px (measured: 1.06 % more pairs in the atelier, where tiles are many
+        // times larger than splats). Discs that reach the eye's plane get every tile of their box, and the
+        // cloud is full of them (measured: 1.72).
+        const double most = view.name == "cloud" ? 2.0 : view.scene.isGaussian3d() ? 1.05 : 1.015;
+        CHECK(static_cast<double>(pairs.size()) <= most * static_cast<double>(twin.pairs.size()));
     }
 }
 
@@ -255,16 +254,16 @@ TEST_CASE_FIXTURE(
     std::mt19937 random(1);
     // More columns of tiles than a word of the mask has bits, a scene in which many splats have large boxes,
     // and boxes of all widths.
-    std::vector<test::Splat> wide_splats;
+    std::vector<Splat> wide_splats;
     for (int i = 0; i < 400; ++i) {
         const auto draw = [&] { return static_cast<float>(random() % 10000) / 10000.0f; };
         wide_splats.push_back({{12.0f * draw() - 6.0f, 0.4f * draw() - 0.2f, 1.0f},
                                {1, 0, 0, 0},
                                {0.05f + 1.5f * draw(), 0.02f}});
     }
-    const ViewedScene wide{"wide", test::makeScene(wide_splats), test::makeEye({1100, 40})};
+    const ViewedScene wide{"wide", makeScene(wide_splats), makeEye({1100, 40})};
     for (const ViewedScene& view :
-         {test::viewBuiltin("builtin:atelier", {1100, 40}, 20000), test::viewCloud({530, 130}), wide}) {
+         {viewBuiltin("builtin:atelier", {1100, 40}, 20000), viewCloud({530, 130}), wide}) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
         const std::vector<TilePair> all = binOnDevice(*this, view, twin);
@@ -280,7 +279,7 @@ TEST_CASE_FIXTURE(
         for (const auto& mask : masks) {
             std::vector<TilePair> expected = all;
             std::erase_if(expected, [&](const TilePair& pair) { return mask[pair.tile] == 0; });
-            CHECK(binOnDevice(*this, view, twin, test::maskOf(mask, size_tiles)) == expected);
+            CHECK(binOnDevice(*this, view, twin, maskOf(mask, size_tiles)) == expected);
         }
     }
 }

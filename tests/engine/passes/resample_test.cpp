@@ -65,7 +65,7 @@ struct Differences {
     // `relative` to the expected error; each of 256 pixels is rounded down to a step.
     void count(double got, double expected, std::size_t tile, double relative, double pixels = 256.0) {
         error = std::max(error, (std::abs(got - expected) - pixels / kSteps) / std::max(expected, 1e-3));
-        if (!test::isNear(got, expected, relative, pixels / kSteps)) { other_tiles.push_back(tile); }
+        if (!isNear(got, expected, relative, pixels / kSteps)) { other_tiles.push_back(tile); }
         ++tiles;
     }
 };
@@ -85,7 +85,7 @@ void resampleApart(StereoOnDevice& device, Parts parts, bool coarse) {
 void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differences& differences) {
     INFO(c.name, ", gap px ", way.gap_px, ", rows ", static_cast<int>(way.rows), ", forward ",
          way.parts.forward, ", moves row ", way.parts.moves_row);
-    if (areHalves(way.rows)) { test::roundToHalves(c.dominant); }
+    if (areHalves(way.rows)) { roundToHalves(c.dominant); }
     c.settings.forward = way.parts.forward;
     // Gaps that reproject has not closed are left to this pass.
     c.settings.gap_px = way.gap_px == 5 ? 0 : way.gap_px;
@@ -96,7 +96,7 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
     const Expected expected(c, arrived, kinds, way, device.rectified() != 0);
     differences.means += expected.means;
     if (!way.parts.moves_row) { device.writeArrivals(arrived.words); }
-    device.writeTileKinds(test::kindsOf(kinds));
+    device.writeTileKinds(kindsOf(kinds));
     device.writeTileErrors(std::vector<gpu::uint>(device.tileCount(), kNewcomers));
     if (way.apart) { device.takeRowsApart(); }
     const auto before = device.readAffiliatedWords();
@@ -110,7 +110,7 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
     std::size_t touched = 0, other_class = 0, other_depth = 0, other_parent = 0;
     std::array<std::uint32_t, 3> counts{};
     for (std::size_t i = 0; i < colours.size(); ++i) {
-        const TileKind kind = kinds[test::tileOf(i, c.sizePx())];
+        const TileKind kind = kinds[tileOf(i, c.sizePx())];
         const auto pixel_class = static_cast<std::uint8_t>(expected.resolved[i].pixel_class);
         if (kind == TileKind::kNone) {
             ++counts[pixel_class];
@@ -176,8 +176,8 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
 
 Differences checkAll(Gpu& gpu, std::span<const Way> ways) {
     Differences all;
-    for (const StereoCase& c : test::makeStereoCases()) {
-        for (const Way& way : ways) { check(gpu, c, test::markSome(test::tileCount(c.sizePx())), way, all); }
+    for (const StereoCase& c : makeStereoCases()) {
+        for (const Way& way : ways) { check(gpu, c, markSome(tileCount(c.sizePx())), way, all); }
     }
     MESSAGE("largest difference " << all.colour << ", of depths " << all.depth << "; "
                                   << all.other_tiles.size() << " of " << all.tiles
@@ -199,7 +199,7 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
         for (std::size_t t = 1; t < hidden.size(); t += 5) { hidden[t] = 1; }
         device.writeHidden(hidden);
     }
-    device.writeTileKinds(test::kindsOf(kinds));
+    device.writeTileKinds(kindsOf(kinds));
     if (!moves_row) { device.reproject(hides, parts.forward); }
     parts.hidden_tiles = moves_row && hides;
     parts.moves_row = moves_row;
@@ -212,7 +212,7 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
     auto colours = device.readAffiliated();
     auto depths = device.readDepths();
     for (std::size_t i = 0; i < colours.size(); ++i) {
-        if (kinds[test::tileOf(i, c.sizePx())] == TileKind::kNone) { continue; }
+        if (kinds[tileOf(i, c.sizePx())] == TileKind::kNone) { continue; }
         colours[i] = gpu::vec4(0.0f);
         depths[i] = 0.0f;
     }
@@ -241,7 +241,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(all.error <= 0.002);
 }
 
-TEST_CASE_FIXTURE(Gpu, "resample does so whatever is asked of it together" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu, "resample does so whatever is asked of it together" * nightly()) {
     std::vector<Way> ways;
     for (const auto& [gap_px, forward] : {std::pair(0, false), std::pair(2, false), std::pair(5, false),
                                           std::pair(0, true), std::pair(2, true)}) {
@@ -280,7 +280,7 @@ TEST_CASE_FIXTURE(
         copied{.depths = true, .classes = true, .forward = true, .hidden_tiles = true};
     Parts apart{.errors = true, .depths = true}, apart_hidden = apart, hidden = moved;
     hidden.hidden_tiles = apart_hidden.hidden_tiles = true;
-    for (StereoCase c : test::makeStereoCases()) {
+    for (StereoCase c : makeStereoCases()) {
         if (toDevice(*this, c).rectified() == 0) { continue; }
         for (const Way& way : {Way{2, Rows::kShared, moved}, Way{5, Rows::kSharedHalves, hidden},
                                Way{2, Rows::kShared, copied}, Way{2, Rows::kSharedHalves, apart, true},
@@ -288,7 +288,7 @@ TEST_CASE_FIXTURE(
             INFO(c.name, ", gap px ", way.gap_px, ", apart ", way.apart, ", forward ", way.parts.forward);
             c.settings.gap_px = way.gap_px;
             c.settings.forward = way.parts.forward;
-            const Kinds kinds = test::markSome(test::tileCount(c.sizePx()));
+            const Kinds kinds = markSome(tileCount(c.sizePx()));
             CHECK(moveRows(*this, c, kinds, way, true) == moveRows(*this, c, kinds, way, false));
             ++pictures;
         }
@@ -311,7 +311,7 @@ TEST_CASE_FIXTURE(
         c.dominant.inverse_depth.push_back(w);
         c.dominant.inverse_depth_squared.push_back(w * w);
     }
-    test::roundToWords(c.dominant, c.settings);
+    roundToWords(c.dominant, c.settings);
     for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
         StereoOnDevice device = toDevice(*this, c, rows);
         device.reproject(/*hidden_tiles=*/false, /*forward=*/true);
@@ -335,7 +335,7 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than it keeps at a time") {
     // A ramp with steps in depth: 20 px of disparity per unit of inverse depth.
-    const std::uint32_t longest_shared = test::longestSharedRow(context());
+    const std::uint32_t longest_shared = longestSharedRow(context());
     for (const std::uint32_t width :
          {1u, 31u, 33u, 128u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
           longest_shared - 1, longest_shared, longest_shared + 1, 5000u, 16384u}) {
@@ -353,8 +353,8 @@ TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than
             c.dominant.inverse_depth.push_back(w);
             c.dominant.inverse_depth_squared.push_back(w * w * (x % 11 == 0 ? 1.5 : 1.01));
         }
-        test::roundToWords(c.dominant, c.settings);
-        const Kinds kinds(test::tileCount(size_px), TileKind::kNone);
+        roundToWords(c.dominant, c.settings);
+        const Kinds kinds(tileCount(size_px), TileKind::kNone);
         const Parts parts{.errors = true, .classes = true};
         for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
             if (rows == Rows::kShared && width > longest_shared) { continue; }
@@ -378,12 +378,12 @@ TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than
 }
 
 TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, but paints what is hidden") {
-    const StereoCase c = test::makeStereoCases().front();
+    const StereoCase c = makeStereoCases().front();
     const Arrived arrived(c);
     StereoOnDevice device = toDevice(*this, c, Rows::kShared);
-    const auto kinds = test::markSome(device.tileCount());
+    const auto kinds = markSome(device.tileCount());
     device.writeArrivals(arrived.words);
-    device.writeTileKinds(test::kindsOf(kinds));
+    device.writeTileKinds(kindsOf(kinds));
     device.writeCounters({});
     const auto before = device.readAffiliatedWords();
     device.resample({.errors = true, .classes = true, .background = glm::vec3(0.5f)});
@@ -391,7 +391,7 @@ TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, bu
     const auto colours = device.readAffiliated();
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < colours.size(); ++i) {
-        const bool hidden = kinds[test::tileOf(i, c.sizePx())] == TileKind::kHidden;
+        const bool hidden = kinds[tileOf(i, c.sizePx())] == TileKind::kHidden;
         wrong +=
             (hidden ? colours[i] == gpu::vec4(0.5f, 0.5f, 0.5f, 0.0f) : isSamePixel(before, after, i, device))
                 ? 0

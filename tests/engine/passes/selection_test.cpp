@@ -61,7 +61,7 @@ void checkLists(const Chosen& chosen, glm::uvec2 size, bool counts = true) {
         cost += chosen.costs[t];
     }
     CHECK(chosen.list == list);
-    CHECK(chosen.mask == test::maskOf(marked, size));
+    CHECK(chosen.mask == maskOf(marked, size));
     CHECK(chosen.masked_tiles.needed == list.size());
     CHECK(chosen.masked_tiles.count == list.size());
     CHECK(chosen.masked_tiles.groups_done == 0);
@@ -85,10 +85,10 @@ struct Expected {
     std::vector<std::uint64_t> costs;
 };
 Expected expectOf(const Tiles& eye, const Chosen& got) {
-    Expected expected{test::kindsOf(eye.kinds), {}, {eye.costs.begin(), eye.costs.end()}};
+    Expected expected{kindsOf(eye.kinds), {}, {eye.costs.begin(), eye.costs.end()}};
     for (const gpu::uint error : eye.errors) { expected.errors.push_back(error / kErrorSteps); }
     std::vector<reference::HistoryTile> twin;
-    for (const gpu::HistoryTile& tile : eye.history) { twin.push_back(test::tileOf(tile)); }
+    for (const gpu::HistoryTile& tile : eye.history) { twin.push_back(tileOf(tile)); }
     reference::growErrors(twin);
     std::size_t other = 0;
     for (std::size_t t = 0; t < twin.size(); ++t) {
@@ -97,12 +97,12 @@ Expected expectOf(const Tiles& eye, const Chosen& got) {
         const double error = hidden ? 0.0 : reference::worthOf(twin[t]);
         expected.costs[t] = hidden ? 0 : reference::costOf(twin[t]);
         for (std::size_t q = 0; q < 4; ++q) {
-            other += test::isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]),
-                                  twin[t].errors[q], 1e-6, 0.0)
+            other += isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]),
+                            twin[t].errors[q], 1e-6, 0.0)
                          ? 0
                          : 1;
         }
-        other += coarse || test::isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps) ? 0 : 1;
+        other += coarse || isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps) ? 0 : 1;
         other += coarse || (got.errors[t] == 0) == (error == 0.0) ? 0 : 1;
         other += got.costs[t] == expected.costs[t] ? 0 : 1;
         expected.errors[t] = coarse ? error : got.errors[t] / kErrorSteps;
@@ -144,8 +144,8 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
                 ++rough;
             }
             if (how.error_bound > 0.0 && prices[e][t]) {
-                prices[e][t] = reference::priceUnderBound(*prices[e][t], test::tileOf(got[e].history[t]),
-                                                          how.error_bound);
+                prices[e][t] =
+                    reference::priceUnderBound(*prices[e][t], tileOf(got[e].history[t]), how.error_bound);
             }
             words.push_back(prices[e][t] ? *prices[e][t] << 22 | static_cast<gpu::uint>(costs[t]) : 0);
             if (prices[e][t]) { bins[*prices[e][t]] += static_cast<gpu::uint>(costs[t]); }
@@ -171,7 +171,7 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
         reference::select(expected[0].kinds, prices[0], expected[0].costs, budget_cost);
     }
     for (std::size_t e = 0; e < eyes.size(); ++e) {
-        const std::vector<gpu::uint> kinds = test::kindsOf(expected[e].kinds);
+        const std::vector<gpu::uint> kinds = kindsOf(expected[e].kinds);
         std::size_t other = 0;
         for (std::size_t t = 0; t < kinds.size(); ++t) { other += got[e].kinds[t] == kinds[t] ? 0 : 1; }
         CHECK(other <= (how.gaze ? 1 + kinds.size() / 100 : 0));
@@ -304,7 +304,7 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     std::vector<double> errors;
     for (const gpu::uint error : tiles.errors) { errors.push_back(error / kErrorSteps); }
     const std::vector<std::uint64_t> costs(tiles.costs.begin(), tiles.costs.end());
-    const auto whole = reference::price(test::kindsOf(tiles.kinds), errors, costs);
+    const auto whole = reference::price(kindsOf(tiles.kinds), errors, costs);
     std::vector<gpu::uint> bins(gpu::kPriceBins, 0);
     for (std::size_t t = 0; t < whole.size(); ++t) {
         if (whole[t]) { bins[*whole[t]] += tiles.costs[t]; }
@@ -315,7 +315,7 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
         INFO("direction.x ", gaze.direction.x, ", clear ", gaze.clear_rad);
         const Chosen got = chooseOnDevice(*this, {tiles}, {.seen = eye, .gaze = gaze})[0];
         const auto shares = reference::findSeenShares(eye, {gaze.direction, gaze.clear_rad});
-        const auto expected = reference::price(test::kindsOf(tiles.kinds), errors, costs, shares);
+        const auto expected = reference::price(kindsOf(tiles.kinds), errors, costs, shares);
         CHECK(got.bins == bins);
         std::size_t priced = 0, other_bins = 0, unnoticed = 0, coarse = 0;
         for (std::size_t t = 0; t < expected.size(); ++t) {
@@ -352,7 +352,7 @@ TEST_CASE_FIXTURE(
                         {.budget = budget, .error_bound = 0.04});
         }
     }
-    Eye eye = test::makeEye({43 * 16, 20 * 16});
+    Eye eye = makeEye({43 * 16, 20 * 16});
     eye.intrinsics = intrinsicsFromFovX(glm::radians(90.0), eye.size_px);
     const Gaze gaze{glm::normalize(glm::dvec3(0.3, -0.1, 1.0)), 0.05};
     for (const double budget : {0.02, 0.2, 0.6, 1.0}) {

@@ -38,9 +38,7 @@ std::uint64_t countHidden(Side side) {
 }
 
 FrameSettings makeSettings(Mode mode, Side dominant, bool masked) {
-    FrameSettings settings;
-    settings.mode = mode;
-    settings.dominant = dominant;
+    FrameSettings settings = test::makeSettings(mode, dominant);
     settings.background = kBackground;
     settings.keep_both_depths = true;
     settings.stereo.center_rois = true;
@@ -58,7 +56,7 @@ bool samePixel(const Image& a, const Image& b, std::size_t i) {
 void checkPicture(const Image& picture, const Image& whole, const Image& depth, Side side) {
     std::size_t not_background = 0, other = 0;
     for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
-        if (lenses()[side][test::tileOf(i, kSizePx)] == 0) {
+        if (lenses()[side][tileOf(i, kSizePx)] == 0) {
             other += samePixel(picture, whole, i) ? 0 : 1;
         } else {
             const float* pixel = &picture.values[4 * i];
@@ -71,40 +69,11 @@ void checkPicture(const Image& picture, const Image& whole, const Image& depth, 
     CHECK(other == 0);
 }
 
-ViewedScene room() { return test::viewBuiltin("builtin:atelier", kSizePx, 20000); }
-
-// A frame in which one eye is reprojected from the other, and the twin's.
-struct Made {
-    AffiliatedFrame made;
-    Image depth;  // of the affiliated eye
-    reference::StereoPictures twin;
-    std::vector<std::uint32_t> same_kind;  // tiles of which both make the same kind; these look alike, too
-};
-Made makeWithTwin(StereoFrame& frame, const Scene& scene, const std::array<Eye, 2>& eyes,
-                  const reference::StereoSettings& twin_settings, const FrameSettings& settings) {
-    const Side dominant = settings.dominant, other = dominant == kLeft ? kRight : kLeft;
-    AffiliatedFrame made = test::makeAffiliated(frame, eyes, settings);
-    Made both{std::move(made),
-              frame.readDepth(other),
-              reference::renderStereo(scene, {eyes[dominant], eyes[other]}, twin_settings,
-                                      {.background = settings.background}),
-              {}};
-    for (std::size_t t = 0; t < both.twin.tile_kinds.size(); ++t) {
-        both.same_kind.push_back(
-            both.made.tile_kinds[t] == static_cast<std::uint32_t>(both.twin.tile_kinds[t]) ? 1 : 0);
-    }
-    const Image expected =
-        test::keepTiles(test::toImage(eyes[0].size_px, both.twin.affiliated), both.same_kind);
-    CHECK(compare(test::keepTiles(both.made.pictures[other], both.same_kind), expected, 4).psnrDb() >= 80.0);
-    CHECK(compare(both.made.pictures[dominant], test::toImage(both.twin.dominant), 4).psnrDb() >= 80.0);
-    return both;
-}
-
 TEST_CASE_FIXTURE(Gpu,
                   "eyes in full lose their hidden tiles and the pairs of these, and no byte of the others") {
-    const ViewedScene view = room();
-    const auto eyes = test::headsetEyes(view.eye, glm::radians(4.0));
-    test::KeptFrame frame(context(), view.scene);
+    const ViewedScene view = viewAtelier(kSizePx);
+    const auto eyes = headsetEyes(view.eye, glm::radians(4.0));
+    KeptFrame frame(context(), view.scene);
     for (const auto& [mode, dominant] : {std::pair(Mode::kMono, kLeft), std::pair(Mode::kTwoPass, kRight),
                                          std::pair(Mode::kShared, kLeft), std::pair(Mode::kShared, kRight)}) {
         INFO("mode ", static_cast<int>(mode), ", dominant ", static_cast<int>(dominant));
@@ -134,24 +103,21 @@ TEST_CASE_FIXTURE(Gpu,
 }
 
 TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in kind, colour and depth") {
-    const ViewedScene view = room(), fence = test::viewBuiltin("builtin:fence", kSizePx);
-    const auto straight = test::headsetEyes(view.eye, 0.0),
-               canted = test::headsetEyes(view.eye, glm::radians(4.0)),
+    const ViewedScene view = viewAtelier(kSizePx), fence = viewBuiltin("builtin:fence", kSizePx);
+    const auto straight = headsetEyes(view.eye, 0.0), canted = headsetEyes(view.eye, glm::radians(4.0)),
                before_fence = stereoPair(fence.eye, 0.12);
     const std::array seen_by{std::pair(&view, &straight), std::pair(&view, &canted),
                              std::pair(&fence, &before_fence)};
     for (std::size_t way = 0; way < 9; ++way) {
         const auto& [seen, eyes] = seen_by[way / 3];
-        const TileChoice method =
-            std::array{TileChoice::kNone, TileChoice::kPaper, TileChoice::kPredicted}[way % 3];
         const Mode mode = std::array{Mode::kReproject, Mode::kPaper, Mode::kPredicted}[way % 3];
         INFO(seen->name, ", way ", way);
         Scene scene = seen->scene;
-        test::hideWhatMeetsTheNearPlane(scene, *eyes);
-        test::KeptFrame frame(context(), scene);
-        const Side dominant = method == TileChoice::kPaper ? kRight : kLeft,
+        hideWhatMeetsTheNearPlane(scene, *eyes);
+        KeptFrame frame(context(), scene);
+        const Side dominant = mode == Mode::kPaper ? kRight : kLeft,
                    other = dominant == kLeft ? kRight : kLeft;
-        const reference::StereoSettings twin_settings{.choice = method,
+        const reference::StereoSettings twin_settings{.choice = choiceOf(mode),
                                                       .margin_px = 8,
                                                       .center_rois = true,
                                                       .source_hidden = lenses()[dominant],
@@ -166,17 +132,17 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
         }
         // Measured: five in one frame, where a splat that is large for its tiles is only just visible to the
         // dominant eye, or just not.
-        CHECK(std::ranges::count(same_kind, 0u) <= (method == TileChoice::kPredicted ? 6 : 0));
+        CHECK(std::ranges::count(same_kind, 0u) <= (mode == Mode::kPredicted ? 6 : 0));
         CHECK(countOf(made.result, "tiles_patched") == again);
         // The budget is a share of what is shown. The device has the twin's pairs and few more.
-        if (method == TileChoice::kPredicted) {
+        if (mode == Mode::kPredicted) {
             CHECK(static_cast<double>(predicted_cost) <=
                   twin_settings.budget * static_cast<double>(countOf(made.result, "work_full")));
         }
         // Only reprojected pixels are counted, before any tile is rendered for its errors.
         std::uint64_t moved_px = 0, other_depth = 0;
         for (std::size_t i = 0; i < depth.pixelCount(); ++i) {
-            const std::size_t tile = test::tileOf(i, kSizePx);
+            const std::size_t tile = tileOf(i, kSizePx);
             const std::uint32_t kind = made.tile_kinds[tile];
             moved_px += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted ? 1 : 0;
             const double d = static_cast<double>(depth.values[i]), e = twin.affiliated_depth[i];
@@ -195,10 +161,10 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
 
 TEST_CASE_FIXTURE(
     Gpu, "the device's choice for a gaze is the twin's, and so are rows that the eye does not tell apart") {
-    auto view = test::viewBuiltin("builtin:atelier", {256, 192}, 20000);
-    const auto eyes = test::headsetEyes(view.eye, glm::radians(5.0));
-    test::hideWhatMeetsTheNearPlane(view.scene, eyes);
-    test::KeptFrame frame(context(), view.scene);
+    auto view = viewAtelier({256, 192});
+    const auto eyes = headsetEyes(view.eye, glm::radians(5.0));
+    hideWhatMeetsTheNearPlane(view.scene, eyes);
+    KeptFrame frame(context(), view.scene);
     std::size_t chosen = 0, chosen_everywhere = 0, means = 0;
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
@@ -206,11 +172,10 @@ TEST_CASE_FIXTURE(
         const Gaze gaze{{dominant == kLeft ? -3.0 : 3.0, 0.5, 1.0}, 0.0};
         reference::StereoSettings twin_settings{.budget = 0.2};
         twin_settings.target_gaze = reference::Gaze{gaze.direction, gaze.clear_rad};
-        FrameSettings settings;
-        settings.dominant = dominant;
+        FrameSettings settings = test::makeSettings(Mode::kPredicted, dominant);
         settings.keep_both_depths = true;
-        settings.stereo = test::settingsOf(twin_settings);
-        const AffiliatedFrame everywhere = test::makeAffiliated(frame, eyes, settings);
+        settings.stereo = settingsOf(twin_settings);
+        const AffiliatedFrame everywhere = makeAffiliated(frame, eyes, settings);
         const std::size_t other = 1 - static_cast<std::size_t>(dominant);
         settings.gazes[other] = gaze;
         const auto [made, depth, twin, same_kind] =
@@ -236,17 +201,17 @@ TEST_CASE_FIXTURE(
         // The dominant eye's gaze tells nothing about the affiliated eye's tiles.
         settings.gazes = {};
         settings.gazes[static_cast<std::size_t>(dominant)] = gaze;
-        CHECK(test::makeAffiliated(frame, eyes, settings).tile_kinds == everywhere.tile_kinds);
+        CHECK(makeAffiliated(frame, eyes, settings).tile_kinds == everywhere.tile_kinds);
     }
     CHECK(chosen == between(0, chosen_everywhere));
     CHECK(means > 30);  // measured: 51
 }
 
 TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for that other") {
-    const ViewedScene view = room();
+    const ViewedScene view = viewAtelier(kSizePx);
     // Canted, since patches then follow their own order and so equal the full picture bit for bit.
-    const auto eyes = test::headsetEyes(view.eye, glm::radians(4.0));
-    test::KeptFrame frame(context(), view.scene);
+    const auto eyes = headsetEyes(view.eye, glm::radians(4.0));
+    KeptFrame frame(context(), view.scene);
     frame.render(eyes, makeSettings(Mode::kShared, kLeft, false));
     const Image whole = frame.readPicture(kRight);
     // The left lens hides the whole right half; nothing reprojected from the other half reaches there.
@@ -258,7 +223,7 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
         FrameSettings settings = makeSettings(mode, kLeft, false);
         settings.stereo.center_rois = false;
         settings.hidden_tiles[kLeft] = right_half;
-        const auto made = test::makeAffiliated(frame, eyes, settings);
+        const auto made = makeAffiliated(frame, eyes, settings);
         std::size_t wrong = 0, beyond = 0;
         for (std::size_t i = 0; i < whole.pixelCount(); ++i) {
             // The right eye looks further outwards, so that even its middle sees what is hidden from the left
@@ -274,14 +239,14 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
 }
 
 TEST_CASE_FIXTURE(Gpu, "lists may grow in a frame with masks, and where all is hidden there is no work") {
-    const ViewedScene view = room();
-    const auto eyes = test::headsetEyes(view.eye, 0.0);
+    const ViewedScene view = viewAtelier(kSizePx);
+    const auto eyes = headsetEyes(view.eye, 0.0);
     const GpuScene scene(context(), view.scene);
-    test::KeptFrame frame(context(), scene);
+    KeptFrame frame(context(), scene);
     StereoFrame small(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
     small.render(eyes, makeSettings(Mode::kPredicted, kLeft, true));
     frame.render(eyes, makeSettings(Mode::kPredicted, kLeft, true));
-    CHECK(test::shownBy(small) == test::shownBy(frame));
+    CHECK(shownBy(small) == shownBy(frame));
     const Tiles all(kTiles.x * kTiles.y, 1);
     FrameSettings settings = makeSettings(Mode::kPredicted, kLeft, false);
     settings.hidden_tiles = {all, all};

@@ -54,7 +54,7 @@ int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, uns
     std::size_t longest = 0;
     for (const Values& list : lists) {
         begins.push_back(keys.size());
-        states.push_back(test::makeList(list.size()));
+        states.push_back(makeList(list.size()));
         keys.insert(keys.end(), list.begin(), list.end());
         values.resize(keys.size());
         std::iota(values.end() - static_cast<std::ptrdiff_t>(list.size()), values.end(), 0u);
@@ -173,7 +173,7 @@ void checkSums(Gpu& gpu, std::size_t count) {
     summed.sums.resize(count);
     for (std::size_t i = 0; i < count && length < count; ++i) { summed.sums[i] += runs[i / length]; }
     CHECK(summed.sums == expected);
-    CHECK(wordsOf(summed.result) == wordsOf(test::makeList(total)));
+    CHECK(wordsOf(summed.result) == wordsOf(makeList(total)));
 }
 
 // The list for a sum of values, each at most 2^20.
@@ -225,7 +225,7 @@ TEST_CASE_FIXTURE(Gpu, "keys alone are sorted by some of their bits, in place if
             CAPTURE(count);
             const Values keys = makeKeys(kRandom, size, 32);
             const Buffer key_buffer = upload("keys", keys), spare = upload("spare keys", keys);
-            const Buffer lists = upload("lists", std::vector{test::makeList(size)});
+            const Buffer lists = upload("lists", std::vector{makeList(size)});
             const Buffer histograms(context(), "histograms", Sort::histogramBytes(size));
             KeyBits bits(count, first);
             if (bits.endInSpare()) { ++bits.rounds; }
@@ -248,7 +248,7 @@ TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay a
     const Values keys{5, 4, 3, 2, 1};
     const Buffer key_buffer = upload("keys", keys), values = upload("values", keys),
                  spare_keys = upload("spare keys", keys), spare_values = upload("spare values", keys);
-    const Buffer lists = upload("lists", std::vector{test::makeList(5, 4)});
+    const Buffer lists = upload("lists", std::vector{makeList(5, 4)});
     const Buffer histograms(context(), "histograms", Sort::histogramBytes(5));
     run([&](Commands& commands) {
         sort.record(kernels, commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
@@ -278,7 +278,7 @@ TEST_CASE_FIXTURE(Gpu,
                   "is told as such") {
     for (const std::uint32_t capacity : {60u, 59u}) {
         const gpu::ListState list = sumUp(*this, {10, 20, 30}, capacity).result;
-        CHECK(wordsOf(list) == wordsOf(test::makeList(60, capacity)));
+        CHECK(wordsOf(list) == wordsOf(makeList(60, capacity)));
         CHECK(these(list.needed, list.count, (list.per_item.x == 0)) ==
               these(60, (capacity == 60 ? 60 : 0), (capacity < 60)));
     }
@@ -289,7 +289,7 @@ TEST_CASE_FIXTURE(Gpu,
           (std::uint64_t{1} << 32) + 5, std::uint64_t{5} << 32, (std::uint64_t{9} << 32) + 77}) {
         CAPTURE(total);
         const gpu::ListState list = listOfSum(*this, total, UINT32_MAX - 1);
-        CHECK(wordsOf(list) == wordsOf(test::makeList(UINT32_MAX, UINT32_MAX - 1)));
+        CHECK(wordsOf(list) == wordsOf(makeList(UINT32_MAX, UINT32_MAX - 1)));
         CHECK(these(list.needed, list.count) == these(UINT32_MAX, 0));
     }
 }
@@ -313,7 +313,7 @@ TEST_CASE_FIXTURE(Gpu, "dispatches over a list fold into rows beyond the groups 
           gpu::kMaxGroupsX * gpu::kListBlock + 1, 2'147'000'000u, gpu::kMaxItems}) {
         CAPTURE(total);
         const gpu::ListState list = listOfSum(*this, total, UINT32_MAX);
-        CHECK(wordsOf(list) == wordsOf(test::makeList(total, UINT32_MAX)));
+        CHECK(wordsOf(list) == wordsOf(makeList(total, UINT32_MAX)));
         for (const auto& [size, items] :
              {std::pair(list.per_item, gpu::kGroupSize), std::pair(list.per_block, gpu::kListBlock)}) {
             CHECK(size.x <= gpu::kMaxGroupsX);

@@ -22,7 +22,7 @@ struct Differences {
     // Words that agree up to a step of the depth, which float32's interpolation may round to the next one.
     void count(const std::vector<gpu::uint>& got, const std::vector<Arrival>& expected) {
         for (std::size_t i = 0; i < expected.size(); ++i) {
-            const gpu::uint word = test::packArrival(expected[i]);
+            const gpu::uint word = packArrival(expected[i]);
             const bool same = ((got[i] ^ word) & 63) == 0 && stepsApart(got[i], word) <= 1;
             other += same ? 0 : 1;
             off_by_step += same && got[i] != word ? 1 : 0;
@@ -43,14 +43,14 @@ struct Way {
 void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
     Differences all;
     std::size_t held_back = 0;
-    for (StereoCase c : test::makeStereoCases()) {
+    for (StereoCase c : makeStereoCases()) {
         const bool along_rows = c.name.find("canted") == std::string::npos;
         CHECK(relate(c.eyes.source, c.eyes.target).rectified == along_rows);
         for (const auto& [gap_px, forward, rows, hides] : ways) {
             INFO(c.name, ", gap px ", gap_px, ", forward ", forward, ", hides ", hides);
             c.settings.gap_px = gap_px;
             c.settings.forward = forward;
-            c.settings.source_hidden.assign(hides ? test::tileCount(c.sizePx()) : 0, 0);
+            c.settings.source_hidden.assign(hides ? tileCount(c.sizePx()) : 0, 0);
             for (std::size_t t = 1; t < c.settings.source_hidden.size(); t += 5) {
                 c.settings.source_hidden[t] = 1;
             }
@@ -63,7 +63,7 @@ void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
             // Along rows depths are copied, so only interpolated ones can be rounded.
             if (along_rows && (gap_px == 0 || forward)) { CHECK(differences.off_by_step == 0); }
             // What moved is unchanged.
-            CHECK(device.readMoving() == test::movingOf(c.dominant, c.settings));
+            CHECK(device.readMoving() == movingOf(c.dominant, c.settings));
             all.pixels += differences.pixels;
             all.other += differences.other;
             all.off_by_step += differences.off_by_step;
@@ -76,8 +76,8 @@ void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
         }
     }
     CHECK(held_back > 10000);
-    CHECK(test::share(all.other, all.pixels) <= 0.0001);
-    CHECK(test::share(all.off_by_step, all.pixels) <= 0.01);
+    CHECK(share(all.other, all.pixels) <= 0.0001);
+    CHECK(share(all.off_by_step, all.pixels) <= 0.01);
 }
 
 struct Newcomers {
@@ -103,12 +103,12 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     newcomers.expected =
         reference::addNewcomers(expected, target, target_pairs, source_pairs, c.dominant, kinds, c.settings);
 
-    device.writeTileDepths(test::depthsOfTiles(c));
-    device.writeTileKinds(test::kindsOf(kinds));
+    device.writeTileDepths(depthsOfTiles(c));
+    device.writeTileKinds(kindsOf(kinds));
     std::vector<gpu::uint> source_tiles(order.size(), 0);
     for (const reference::TilePair& pair : source_pairs) { ++source_tiles[pair.splat]; }
-    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {c.eyes.source, c.eyes.target}, settings.near),
-                        order, source_tiles);
+    device.addNewcomers(SceneOnDevice(gpu, c.scene, {c.eyes.source, c.eyes.target}, settings.near), order,
+                        source_tiles);
     newcomers.found = device.readCounters().newcomers;
     const auto errors = device.readTileErrors();
     for (std::size_t t = 0; t < errors.size(); ++t) {
@@ -126,12 +126,12 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
 // The number of newcomers among these splats, for an eye and one in its place, and the tiles' errors
 // including what they add.
 std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
-                                                   const std::vector<test::Splat>& splats,
+                                                   const std::vector<Splat>& splats,
                                                    const std::vector<gpu::uint>& depths,
                                                    const std::vector<gpu::uint>& kinds,
                                                    const std::vector<gpu::uint>& errors) {
-    const Eye eye = test::makeEye(size_px);
-    StereoCase c{"splats", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
+    const Eye eye = makeEye(size_px);
+    StereoCase c{"splats", makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
     c.dominant.rgba.resize(std::size_t{size_px.x} * size_px.y);
     std::vector<std::uint32_t> order(splats.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -139,7 +139,7 @@ std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
     device.writeTileDepths(depths);
     device.writeTileKinds(kinds);
     device.writeTileErrors(errors);
-    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order,
+    device.addNewcomers(SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order,
                         std::vector<gpu::uint>(splats.size(), 0));
     return {device.readCounters().newcomers, device.readTileErrors()};
 }
@@ -153,8 +153,7 @@ TEST_CASE_FIXTURE(
                            {20, false, Rows::kOwn},
                            {2, true, Rows::kShared}});
 }
-TEST_CASE_FIXTURE(Gpu,
-                  "reproject does so with any gap, forward or not, in rows of any kind" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu, "reproject does so with any gap, forward or not, in rows of any kind" * nightly()) {
     std::vector<Way> ways;
     for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
         for (const int gap_px : {0, 2, 5, 20}) { ways.push_back({gap_px, false, rows, gap_px == 2}); }
@@ -178,7 +177,7 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
     c.dominant.inverse_depth[5] = 1.75;
     c.dominant.inverse_depth[6] = 0.03;
     c.dominant.inverse_depth_squared[6] = 0.03 * 0.03 * (1.0 + 0x1p-8);
-    test::roundToWords(c.dominant, c.settings);
+    roundToWords(c.dominant, c.settings);
     for (const auto& [gap_px, filled] : {std::pair(20, 6), std::pair(2, 0)}) {
         c.settings.gap_px = gap_px;
         StereoOnDevice device = toDevice(*this, c);
@@ -187,33 +186,31 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
         const auto expected = reference::reproject(c.dominant, c.eyes, c.settings);
         int between = 0;
         for (std::size_t x = 0; x < 40; ++x) {
-            CHECK(test::unpackArrival(words[x]).way == expected[x].way);
-            CHECK(test::unpackArrival(words[x]).spread == expected[x].spread);
+            CHECK(unpackArrival(words[x]).way == expected[x].way);
+            CHECK(unpackArrival(words[x]).spread == expected[x].spread);
             between += expected[x].way == Arrival::kBetween ? 1 : 0;
         }
         CHECK(between == filled);
-        CHECK(test::unpackArrival(words[6]).spread == 19);
+        CHECK(unpackArrival(words[6]).spread == 19);
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's errors") {
-    const test::ViewedScene room = test::viewBuiltin("builtin:atelier", {128, 96}, 20000),
-                            cloud = test::viewCloud({128, 96});
-    const test::ViewedScene gaussians = test::viewGaussians({128, 96}, false),
-                            dimmed = test::viewGaussians({128, 96}, true);
-    for (const auto& [view, eyes] : {std::pair(&room, test::headsetEyes(room.eye, 0.0)),
-                                     std::pair(&room, test::headsetEyes(room.eye, glm::radians(5.0))),
+    const ViewedScene room = viewBuiltin("builtin:atelier", {128, 96}, 20000), cloud = viewCloud({128, 96});
+    const ViewedScene gaussians = viewGaussians({128, 96}, false), dimmed = viewGaussians({128, 96}, true);
+    for (const auto& [view, eyes] : {std::pair(&room, headsetEyes(room.eye, 0.0)),
+                                     std::pair(&room, headsetEyes(room.eye, glm::radians(5.0))),
                                      std::pair(&cloud, stereoPair(cloud.eye, 0.2)),
                                      std::pair(&gaussians, stereoPair(gaussians.eye, 0.2)),
                                      std::pair(&dimmed, stereoPair(dimmed.eye, 0.2))}) {
         for (const Side dominant : {kLeft, kRight}) {
             for (const bool whole : {false, true}) {
                 Scene scene = view->scene;
-                if (!whole) { test::hideWhatMeetsTheNearPlane(scene, eyes); }
-                const StereoCase c = test::makeCase(view->name, scene, eyes, dominant);
+                if (!whole) { hideWhatMeetsTheNearPlane(scene, eyes); }
+                const StereoCase c = makeCase(view->name, scene, eyes, dominant);
                 INFO(c.name, ", whole ", whole);
-                const std::size_t tiles = test::tileCount(c.sizePx());
-                const auto kinds = whole ? test::markSome(tiles) : std::vector(tiles, TileKind::kNone);
+                const std::size_t tiles = tileCount(c.sizePx());
+                const auto kinds = whole ? markSome(tiles) : std::vector(tiles, TileKind::kNone);
                 const Newcomers newcomers = findNewcomers(*this, c, kinds);
                 CHECK(newcomers.expected > 2);
                 CHECK(newcomers.in_marked == 0);
@@ -258,11 +255,9 @@ TEST_CASE_FIXTURE(
          {Large{0.004f, 1, 0.3, 30, 64}, Large{0.006f, 2, 0.3, 65, 150}, Large{0.03f, 1, 0.3, 1025, 1400},
           Large{0.03f, 1, 8.0, 1025, 1400}, Large{0.03f, 3, 8.0, 1025, 1400}}) {
         INFO("large.scale ", large.scale, ", large.newcomer error ", large.newcomer_error);
-        const test::Splat splat{
-            glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)),
-            glm::quat(turnBy(12.0)), glm::vec2(large.scale), 0.9f, glm::vec3(0.5f)};
-        StereoCase c =
-            test::makeCase("large", test::makeScene(std::vector(large.splats, splat)), eyes, kLeft);
+        const Splat splat{glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)),
+                          glm::quat(turnBy(12.0)), glm::vec2(large.scale), 0.9f, glm::vec3(0.5f)};
+        StereoCase c = makeCase("large", makeScene(std::vector(large.splats, splat)), eyes, kLeft);
         c.settings.newcomer_error = large.newcomer_error;
         const Newcomers newcomers =
             findNewcomers(*this, c, std::vector(std::size_t{40} * 35, TileKind::kNone));
@@ -283,7 +278,7 @@ TEST_CASE_FIXTURE(
     // Small discs of inverse depth 1/3 along the middle row. The first two share a tile, and the second
     // reaches beyond it.
     const glm::uvec2 size_px(64, 16);
-    std::vector<test::Splat> splats;
+    std::vector<Splat> splats;
     for (const double column : {6.5, 14.5, 24.5, 33.5, 56.5}) {
         splats.push_back({{(column - 32.0) * 3.0 / 100.0, 0.0f, 3.0f},
                           {1, 0, 0, 0},
@@ -291,7 +286,7 @@ TEST_CASE_FIXTURE(
                           0.9f,
                           glm::vec3(0.5f)});
     }
-    const gpu::uint near = test::packMoving(0.5, true, 0), far = test::packMoving(0.25, true, 0), nothing = 0;
+    const gpu::uint near = packMoving(0.5, true, 0), far = packMoving(0.25, true, 0), nothing = 0;
     const auto found = [&](const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds) {
         const auto [count, errors] =
             addTo(*this, size_px, splats, depths, kinds, std::vector<gpu::uint>(4, 0));
@@ -308,7 +303,7 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(Gpu,
                   "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
     // A thousand discs in front of one tile, each of which alone adds more than remains.
-    const std::vector<test::Splat> splats(
+    const std::vector<Splat> splats(
         1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
     for (const gpu::uint before : {0x7ffffff0u, 0x7fffffffu, 0x7fff0000u}) {
         const auto [count, errors] = addTo(*this, {16, 16}, splats, {0}, {0}, {before});
@@ -337,8 +332,8 @@ Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disp
     for (std::size_t i = 0; i < from.pixelCount(); ++i) {
         const float* rgb = &from.values[i * static_cast<std::size_t>(from.channels)];
         colours.emplace_back(rgb[0], rgb[1], rgb[2], 1.0f);
-        moving.push_back(
-            disparity_px[i] > 0.0 ? test::packMoving(disparity_px[i], /*landed=*/true, /*spread=*/0) : 0);
+        moving.push_back(disparity_px[i] > 0.0 ? packMoving(disparity_px[i], /*landed=*/true, /*spread=*/0)
+                                               : 0);
     }
     StereoOnDevice device(gpu, view, colours, moving, Rows::kShared);
     device.reproject();
@@ -349,7 +344,7 @@ Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disp
         made.values.insert(made.values.end(), {pixel.x, pixel.y, pixel.z});
     }
     const double db = compare(made, truth).psnrDb(),
-                 coverage = test::share(std::ranges::count(classes, gpu::kCovered), classes.size());
+                 coverage = share(std::ranges::count(classes, gpu::kCovered), classes.size());
     for (std::size_t i = 0; i < made.values.size(); ++i) {
         const std::size_t pixel = i / 3;
         if (classes[pixel] != gpu::kCovered) {
@@ -363,8 +358,8 @@ TEST_CASE_FIXTURE(Gpu,
                   "a real picture moved by its true disparity is the other eye's, better than by whole "
                   "pixels; moved the wrong way it is "
                   "no likeness, and infinitely far away it keeps its bytes" *
-                      test::needsSharedData() * test::nightly()) {
-    const auto data = test::sharedData();
+                      needsSharedData() * nightly()) {
+    const auto data = sharedData();
     if (!data) { return; }
     // With whole pixels: 27.8 and 26.7 dB on 77 % (Scharstein and Szeliski 2003).
     for (const auto& [name, least_db] : {std::pair("teddy", 28.3), std::pair("cones", 27.2)}) {

@@ -38,7 +38,7 @@ Mask drawMask(glm::uvec2 size_px, const auto& isHole) {
 std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px,
                             std::uint32_t boxes, bool edges) {
     // Half floats and floats in turn.
-    const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
+    const Rows rows = margin_px % 2 == 0 ? Rows::kSharedHalves : Rows::kShared;
     const std::size_t words_per_pixel = areHalves(rows) ? 2 : 4;
     StereoCase c = makePlainCase(size_px);
     c.settings.margin_px = margin_px;
@@ -53,19 +53,19 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
                                        : i % 5 == 0 ? PixelClass::kGap
                                                     : PixelClass::kCovered;
         resolved.push_back({pixel_class, static_cast<std::uint32_t>(i % size_px.x), 0.5, 0});
-        const bool moved = kinds[test::tileOf(i, size_px)] == TileKind::kNone;
+        const bool moved = kinds[tileOf(i, size_px)] == TileKind::kNone;
         classes.push_back(moved ? static_cast<std::uint8_t>(pixel_class) : 0);
         if (moved && mask[i] != 0) { words[words_per_pixel * i] = static_cast<gpu::uint>(i); }
     }
-    StereoOnDevice device(gpu, test::viewOfCase(c), {}, {}, rows, boxes);
-    device.writeTileKinds(test::kindsOf(kinds));
+    StereoOnDevice device(gpu, viewOfCase(c), {}, {}, rows, boxes);
+    device.writeTileKinds(kindsOf(kinds));
     device.writeClasses(classes);
     device.writeAffiliatedWords(words);
     device.findComponents();
     const std::size_t components = reference::markComponents(resolved, kinds, size_px, margin_px, boxes);
     const gpu::WarpCounters counters = device.readCounters();
     CHECK(counters.components == components);
-    CHECK(device.readTileKinds() == test::kindsOf(kinds));
+    CHECK(device.readTileKinds() == kindsOf(kinds));
     CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
     CHECK(device.readClasses() == classes);
     // Except for the holes, nothing has changed.
@@ -153,10 +153,10 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
 TEST_CASE_FIXTURE(
     Gpu, "depth_bounds counts the twin's depths, and of these edge_rois finds the twin's borders and tiles") {
     std::uint32_t all_flips = 0;
-    for (StereoCase c : test::makeStereoCases()) {
+    for (StereoCase c : makeStereoCases()) {
         std::vector<gpu::uint> bins;
-        for (const test::Rows rows : {test::Rows::kOwn, test::Rows::kShared, test::Rows::kSharedHalves}) {
-            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+        for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
+            if (areHalves(rows)) { roundToHalves(c.dominant); }
             INFO(c.name, ", rows ", static_cast<int>(rows));
             StereoOnDevice device = toDevice(*this, c, rows);
             device.boundDepths();
@@ -181,7 +181,7 @@ TEST_CASE_FIXTURE(
             device.findEdgeRois();
             const Borders expected =
                 reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
-            const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
+            const auto kinds = kindsOf(reference::markEdges(expected, c.sizePx()));
             const gpu::WarpCounters counters = device.readCounters();
             CHECK(counters.borders_px ==
                   glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
@@ -209,7 +209,7 @@ TEST_CASE_FIXTURE(Gpu,
             StereoOnDevice device = toDevice(*this, c);
             std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
             reference::markHidden(before, c.settings);
-            device.writeTileKinds(test::kindsOf(before));
+            device.writeTileKinds(kindsOf(before));
             device.writeBins(bins);
             device.findEdgeRois(/*hidden_tiles=*/true);
             const Borders borders =
@@ -218,7 +218,7 @@ TEST_CASE_FIXTURE(Gpu,
             const auto without_lens = std::ranges::count(expected, TileKind::kEdge);
             reference::markHidden(expected, c.settings);
             reference::markBehindHidden(expected, c.eyes, c.settings);
-            CHECK(device.readTileKinds() == test::kindsOf(expected));
+            CHECK(device.readTileKinds() == kindsOf(expected));
             CHECK(device.readCounters().edge_tiles == std::ranges::count(expected, TileKind::kEdge));
             CHECK(std::ranges::count(expected, TileKind::kEdge) > without_lens);
         }

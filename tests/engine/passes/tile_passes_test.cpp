@@ -29,7 +29,7 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
     const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
     const Buffer tiles = gpu.upload("tiles", sorted_tiles),
-                 pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
+                 pairs = gpu.upload("pairs", std::vector{makeList(sorted_tiles.size())});
     const Buffer list = gpu.upload("tile list", listed);
     const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(7)));
     const Buffer full = gpu.upload("full tiles", std::vector<gpu::uint>(tile_count, 7));
@@ -44,7 +44,7 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     state.depths = depths.address<float>();
     state.tile_list = list.address<gpu::uint>();
     state.full_tiles = full.address<gpu::uint>();
-    state.chosen_tiles = test::makeList(listed.size());
+    state.chosen_tiles = makeList(listed.size());
     const Buffer target = gpu.upload("target", std::vector{state}),
                  eyes = gpu.upload("eyes", std::vector{eye});
     gpu::TileRangesPass pass{};
@@ -72,18 +72,18 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
                   .depths = gpu.readBack<float>(depths, pixels),
                   .groups_done = gpu.readBack<gpu::ListState>(pairs, 1)[0].groups_done};
     std::ranges::sort(result.full);
-    result.colours = half_floats ? test::unpackHalves(gpu.readBack<glm::uvec2>(colours, pixels))
+    result.colours = half_floats ? unpackHalves(gpu.readBack<glm::uvec2>(colours, pixels))
                                  : gpu.readBack<glm::vec4>(colours, pixels);
     return result;
 }
 
 // What rasterize reads, as the twin leaves it, and the twin's picture.
 struct Raster {
-    Raster(Gpu& gpu, const test::StagedScene& scene)
+    Raster(Gpu& gpu, const StagedScene& scene)
         : staged(scene), pixels(std::size_t{scene.view.eye.size_px.x} * scene.view.eye.size_px.y), gpu_(gpu) {
         std::vector<gpu::ProjectedSplat> device_splats;
         for (const reference::ProjectedSplat& splat : staged.twin.splats) {
-            device_splats.push_back(test::toDevice(splat));
+            device_splats.push_back(toDevice(splat));
         }
         std::vector<std::uint32_t> pair_ranks;
         for (const TilePair& pair : staged.twin.sorted_pairs) { pair_ranks.push_back(pair.splat); }
@@ -112,7 +112,7 @@ struct Raster {
     void run(RasterizeKernel variant) {
         variant.threads_per_cell = 32;
         variant.local_size_x = gpu::kCellsPerTile * variant.threads_per_cell;
-        variant.splat_kind = test::shapeOf(staged.view.scene);
+        variant.splat_kind = shapeOf(staged.view.scene);
         const Kernel& kernel = gpu_.kernel(variant);
         const glm::uvec2 size_tiles = tilesOf(staged.view.eye.size_px);
         const Buffer target = gpu_.upload("target", std::vector{state});
@@ -120,7 +120,7 @@ struct Raster {
         gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
     }
 
-    const test::StagedScene& staged;
+    const StagedScene& staged;
     std::size_t pixels;
     Buffer colours;
     gpu::RasterizePass pass{};
@@ -194,7 +194,7 @@ TEST_CASE_FIXTURE(Gpu,
                 CHECK((listed.empty() || found.groups == glm::uvec3(groups, groups > 0 ? 1 : 0, 1)));
                 std::size_t wrong = 0;
                 for (std::size_t i = 0; i < found.colours.size(); ++i) {
-                    const std::size_t t = test::tileOf(i, size_px);
+                    const std::size_t t = tileOf(i, size_px);
                     const bool cleared =
                         std::ranges::find(listed, t) != listed.end() && expected[t].x == expected[t].y;
                     wrong += found.colours[i] == (cleared ? glm::vec4(kBackground, 0.0f) : glm::vec4(7.0f))
@@ -209,11 +209,11 @@ TEST_CASE_FIXTURE(Gpu,
 }
 
 TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are wanted") {
-    for (const test::StagedScene& staged : test::stagedScenes()) {
+    for (const StagedScene& staged : stagedScenes()) {
         CAPTURE(staged.view.name);
         Raster raster(*this, staged);
         raster.run({});
-        const auto rounded = test::packHalves(readBack<glm::vec4>(raster.colours, raster.pixels));
+        const auto rounded = packHalves(readBack<glm::vec4>(raster.colours, raster.pixels));
         raster.run({.half_colours = 1});
         const auto halves = readBack<gpu::uvec2>(raster.colours, raster.pixels);
         // The device is free to choose between the two nearest.
@@ -232,14 +232,14 @@ TEST_CASE_FIXTURE(Gpu,
                   "rasterize leaves the word that each pixel moves by, and none where its depth is not one") {
     using reference::DepthChoice;
     std::size_t pixels = 0, other = 0, other_spread = 0;
-    for (const test::StagedScene& staged : test::stagedScenes()) {
+    for (const StagedScene& staged : stagedScenes()) {
         CAPTURE(staged.view.name);
         Raster raster(*this, staged);
         const reference::Picture truth = raster.makeTwin();
         const std::size_t width = truth.size_px.x;
         for (const DepthChoice choice : {DepthChoice::kSum, DepthChoice::kMean, DepthChoice::kInverse}) {
             CAPTURE(static_cast<int>(choice));
-            raster.pass.depth_choice = test::depthChoiceOf(choice);
+            raster.pass.depth_choice = depthChoiceOf(choice);
             RasterizeKernel kernel{.depth = choice != DepthChoice::kInverse, .moments = 1};
             const auto words = wordsOnDevice(*this, raster, kernel);
             auto of_even = words;
@@ -256,13 +256,13 @@ TEST_CASE_FIXTURE(Gpu,
             for (std::size_t i = 0; i < raster.pixels; ++i) {
                 const std::size_t row = 4 * width * (i / width), x = i % width;
                 touched += words[row + x] == 0 && words[row + 2 * width + x] == kUnwritten ? 0 : 1;
-                const reference::Arrival got = test::unpackArrival(words[row + width + x]);
+                const reference::Arrival got = unpackArrival(words[row + width + x]);
                 const auto expected = reference::movingPixel(truth, i, {.depth_choice = choice});
                 CHECK(got.way != reference::Arrival::kBetween);
                 if ((got.way == reference::Arrival::kLanded) != expected.has_value()) {
                     ++other;
                 } else if (expected) {
-                    other += test::isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
+                    other += isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
                     // Spreads of less than 2^-10 are rounding errors of sums in single precision; rounding
                     // also decides between two codes.
                     other_spread +=
@@ -275,8 +275,8 @@ TEST_CASE_FIXTURE(Gpu,
     }
     MESSAGE(other << " depths and " << other_spread << " spreads of " << pixels << " pixels differ");
     // In the cloud, a hit that rounding removes or adds moves a pixel farthest.
-    CHECK(test::share(other, pixels) <= 0.001);
-    CHECK(test::share(other_spread, pixels) <= 0.0005);
+    CHECK(share(other, pixels) <= 0.001);
+    CHECK(share(other_spread, pixels) <= 0.0005);
 }
 
 // For each splat by rank, from one run of contribute.
@@ -300,7 +300,7 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
                                    0,
                                    0};
     const Kernel& kernel =
-        gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true, by_lanes));
+        gpu.kernel(contributeKernel(threads, shapeOf(raster.staged.view.scene), true, by_lanes));
     const glm::uvec2 size_tiles = tilesOf(raster.staged.view.eye.size_px);
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
     std::vector<std::array<double, gpu::kContributionSums>> found(splats);
@@ -315,7 +315,7 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
 TEST_CASE_FIXTURE(Gpu,
                   "contribute finds what each splat makes up of a picture and which way it should go, the "
                   "same on every run") {
-    for (const test::StagedScene& staged : test::stagedScenes()) {
+    for (const StagedScene& staged : stagedScenes()) {
         CAPTURE(staged.view.name);
         Raster raster(*this, staged);
         raster.run({});

@@ -22,13 +22,12 @@ std::vector<TileRange> drawRanges(std::size_t tiles, unsigned most_pairs, std::m
 
 // The tiles of a case whose costs differ: their middle comes from close to the border of a tile, and rounding
 // may put it on either side.
-std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileRange>& ranges,
-                          test::Rows rows) {
+std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileRange>& ranges, Rows rows) {
     StereoOnDevice device = toDevice(gpu, c, rows);
     std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
     reference::markHidden(before, c.settings);
     // What the previous frame left does not matter, except for hidden tiles.
-    std::vector<gpu::uint> stale = test::kindsOf(before);
+    std::vector<gpu::uint> stale = kindsOf(before);
     for (std::size_t t = 0; t < stale.size(); t += 7) {
         stale[t] = stale[t] == gpu::kTileHidden ? stale[t] : gpu::kTilePredicted;
     }
@@ -37,7 +36,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     const reference::Weighed expected = reference::weigh(c.dominant, ranges, c.eyes, c.settings);
     const auto costs = device.readTileCosts(), kinds = device.readTileKinds();
     const gpu::WarpCounters counters = device.readCounters();
-    const auto depths = device.readTileDepths(), expected_depths = test::depthsOfTiles(c);
+    const auto depths = device.readTileDepths(), expected_depths = depthsOfTiles(c);
     std::size_t other = 0, wrong_kinds = 0, wrong_depths = 0;
     std::uint64_t picture_cost = 0, saved_cost = 0, moved = 0;
     for (std::size_t t = 0; t < costs.size(); ++t) {
@@ -85,7 +84,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
 
 // Identical eyes, and a picture that is infinitely far: every tile weighs its own pairs.
 StereoCase makeStill(glm::uvec2 size_px) {
-    const Eye eye = test::makeEye(size_px);
+    const Eye eye = makeEye(size_px);
     StereoCase c{"still", {}, {eye, eye}, {}, {}};
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
     c.dominant = {size_px, std::vector(pixels, glm::dvec4(0.0)), std::vector(pixels, 0.0),
@@ -97,8 +96,8 @@ TEST_CASE_FIXTURE(
     Gpu, "weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
     std::size_t other = 0;
     std::mt19937 random(5);
-    for (StereoCase c : test::makeStereoCases()) {
-        const std::size_t count = test::tileCount(c.sizePx());
+    for (StereoCase c : makeStereoCases()) {
+        const std::size_t count = tileCount(c.sizePx());
         for (unsigned way = 0; way < 8; ++way) {
             const bool hidden = way % 2 != 0;
             c.settings.move_cost = std::array{0u, 30u, 90u, 200u}[way / 2];
@@ -108,8 +107,8 @@ TEST_CASE_FIXTURE(
                 c.settings.source_hidden.push_back(random() % 8 == 0 ? 1 : 0);
                 c.settings.target_hidden.push_back(random() % 8 == 0 ? 1 : 0);
             }
-            const std::size_t differ = checkWeighing(*this, c, drawRanges(count, 200, random),
-                                                     hidden ? test::Rows::kShared : test::Rows::kOwn);
+            const std::size_t differ =
+                checkWeighing(*this, c, drawRanges(count, 200, random), hidden ? Rows::kShared : Rows::kOwn);
             CHECK(differ <= 1);
             other += differ;
         }
@@ -121,23 +120,23 @@ void checkCounts(Gpu& gpu, const std::vector<glm::uvec2>& sizes_tiles) {
     std::mt19937 random(6);
     for (const glm::uvec2 size_tiles : sizes_tiles) {
         StereoCase c = makeStill(16u * size_tiles - 7u);
-        const std::size_t tiles = test::tileCount(c.sizePx());
+        const std::size_t tiles = tileCount(c.sizePx());
         CAPTURE(tiles);
         for (const std::uint32_t move_cost : {0u, 50u, 100u, 70000u}) {
             c.settings.move_cost = move_cost;
             for (const unsigned most_pairs : {0u, 120u}) {
-                CHECK(checkWeighing(gpu, c, drawRanges(tiles, most_pairs, random), test::Rows::kOwn) == 0);
+                CHECK(checkWeighing(gpu, c, drawRanges(tiles, most_pairs, random), Rows::kOwn) == 0);
             }
         }
         c.settings.target_hidden.assign(tiles, 1);
-        CHECK(checkWeighing(gpu, c, drawRanges(tiles, 120, random), test::Rows::kOwn) == 0);
+        CHECK(checkWeighing(gpu, c, drawRanges(tiles, 120, random), Rows::kOwn) == 0);
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over any number of tiles, from one to many workgroups") {
     checkCounts(*this, {{1, 1}, {127, 1}, {1, 128}, {43, 3}, {33, 31}});
 }
-TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over as many tiles as a headset has" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over as many tiles as a headset has" * nightly()) {
     checkCounts(*this, {{100, 50}});
 }
 
@@ -196,7 +195,7 @@ TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a hea
         StereoCase c = makeStill(size_px);
         c.eyes = pairs[p];
         const auto ranges = drawRanges(60, 500, random);
-        CHECK(checkWeighing(*this, c, ranges, test::Rows::kOwn) == 0);
+        CHECK(checkWeighing(*this, c, ranges, Rows::kOwn) == 0);
         const auto unseen = std::ranges::count(reference::weigh(c.dominant, ranges, c.eyes, c.settings).kinds,
                                                TileKind::kEdge);
         // The affiliated eye's outer columns, and not all of its tiles.

@@ -95,7 +95,7 @@ TEST_CASE("the kernel of repeated sampling loses under three quarters of what La
 TEST_CASE(
     "what stands still in front of a head that stands still stays as it is, however often, and has no "
     "error") {
-    const Eye eye = test::makeEye({70, 45});
+    const Eye eye = makeEye({70, 45});
     History history =
         makeHistory(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
     const History first = history;
@@ -116,7 +116,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a wave on a wall comes out as it would have been seen, for the least error that counts") {
-    const Eye eye = test::makeEye({96, 64});
+    const Eye eye = makeEye({96, 64});
     // 0.005 to the right moves a wall at inverse depth 0.5 by 0.25 px to the left.
     const History history = makeHistory(eye, waves, [](double, double) { return 0.5; });
     const WarpedHistory warped = warpHistory(history, moved(eye, {0.005, 0.0, 0.0}));
@@ -145,7 +145,7 @@ TEST_CASE("a wave on a wall comes out as it would have been seen, for the least 
 }
 
 TEST_CASE("what is lost between pixels is what alternates there, in whole blocks and pixel by pixel") {
-    const Eye eye = test::makeEye({96, 64}), half = moved(eye, {0.01, 0.0, 0.0}),
+    const Eye eye = makeEye({96, 64}), half = moved(eye, {0.01, 0.0, 0.0}),
               quarter = moved(eye, {0.005, 0.0, 0.0});
     const auto stripes = [](double x, double) { return glm::dvec3(std::fmod(x, 2.0) == 0.0 ? 0.7 : 0.3); };
     const auto grownOf = [&](const Eye& to, const auto& depth) {
@@ -172,7 +172,7 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
 TEST_CASE(
     "a tile's gradient is its picture's, in whole blocks and pixel by pixel, and where it is low less error "
     "is within a bound") {
-    const Eye eye = test::makeEye({96, 64});
+    const Eye eye = makeEye({96, 64});
     const auto ramp = [](double x, double y) { return glm::dvec3(0.004 * x, 0.003 * y, 0.5); };
     const auto wall = [](double, double) { return 0.5; };
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
@@ -196,7 +196,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the nearer of two is it") {
-    const Eye eye = test::makeEye({160, 48});
+    const Eye eye = makeEye({160, 48});
     // The left half is near, at inverse depth 1: a step of 0.02 to the right moves it 2 px to the left, and
     // what is behind, at 0.1, by 0.2 px.
     const History history = makeHistory(eye, waves, [](double x, double) { return x < 80 ? 1.0 : 0.1; });
@@ -221,7 +221,7 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
 }
 
 TEST_CASE("nothing comes from where the history was hidden, and what is hidden now is background") {
-    const Eye eye = test::makeEye({96, 64});
+    const Eye eye = makeEye({96, 64});
     History history = makeHistory(eye, waves, [](double, double) { return 0.5; });
     std::vector<std::uint8_t> hidden(24, 0);
     hidden[8] = 1;
@@ -237,7 +237,7 @@ TEST_CASE("nothing comes from where the history was hidden, and what is hidden n
 }
 
 TEST_CASE("the colour of what was hidden does not leak into the pixels beside it") {
-    const Eye eye = test::makeEye({96, 64});
+    const Eye eye = makeEye({96, 64});
     const auto grey = [](double, double) { return glm::dvec3(0.5); };
     History history = makeHistory(eye, grey, [](double, double) { return 0.5; });
     history.hidden.assign(24, 0);

@@ -9,7 +9,7 @@ using namespace binosplat::reference;
 // Parallel eyes 0.1 apart with a focal length of 100 px: pixels move 10 px to the left per unit of inverse
 // depth.
 EyePair parallelEyes(glm::uvec2 size_px) {
-    const auto eyes = stereoPair(test::makeEye(size_px), 0.1);
+    const auto eyes = stereoPair(makeEye(size_px), 0.1);
     return {eyes[kLeft], eyes[kRight]};
 }
 
