@@ -10,6 +10,16 @@ namespace binosplat::test {
 // Whether programs can have the validation layers at all.
 inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;
 
+// A buffer's address, of whatever a field of a pass points to.
+struct At {
+    const Buffer& buffer;
+    template <typename T>
+    operator gpu::DeviceAddress<T>() const {
+        return buffer.address<T>();
+    }
+};
+inline At at(const Buffer& buffer) { return {buffer}; }
+
 // Fixture for test cases. All tests of a program share one device. If there is none, every test fails. Any
 // message of the validation layers during a test makes it fail, too.
 class Gpu {

@@ -46,7 +46,7 @@ struct Expected {
         std::vector<double> shares(kinds.size(), 0.26);
         for (std::size_t t = 0; t < shares.size(); t += 2) { shares[t] = 0.25; }
         reference::averageRows(colours, depths, resolved, kinds, shares, c.sizePx());
-        for (std::size_t i = 0; i < colours.size(); ++i) { means += colours[i] != without[i] ? 1 : 0; }
+        for (std::size_t i = 0; i < colours.size(); ++i) { means += colours[i] != without[i]; }
     }
 
     std::vector<reference::Resolved> resolved;
@@ -74,11 +74,11 @@ void resampleApart(StereoOnDevice& device, Parts parts, bool coarse) {
     device.resample(parts);
     std::vector<gpu::uint> errors(device.tileCount(), 7);
     for (std::size_t t = 0; t < errors.size() && coarse; t += 2) { errors[t] = gpu::kSeenCoarsely; }
-    device.writeTileErrors(errors);
+    device.write(device.tile_errors, errors);
     parts.errors = false;
     parts.odd = true;
     device.resample(parts);
-    CHECK(device.readTileErrors() == errors);
+    CHECK(device.read(device.tile_errors) == errors);
 }
 
 // Runs the pass on one case, in tiles that are reprojected; the others must not change.
@@ -96,16 +96,16 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
     const Expected expected(c, arrived, kinds, way, device.rectified() != 0);
     differences.means += expected.means;
     if (!way.parts.moves_row) { device.writeArrivals(arrived.words); }
-    device.writeTileKinds(kindsOf(kinds));
-    device.writeTileErrors(std::vector<gpu::uint>(device.tileCount(), kNewcomers));
+    device.write(device.tile_kinds, kindsOf(kinds));
+    device.write(device.tile_errors, std::vector<gpu::uint>(device.tileCount(), kNewcomers));
     if (way.apart) { device.takeRowsApart(); }
-    const auto before = device.readAffiliatedWords();
+    const auto before = device.read(device.affiliated);
     Parts parts = way.parts;
     parts.background = kBackground;
     way.apart ? resampleApart(device, parts, way.coarse) : device.resample(parts);
-    const auto after = device.readAffiliatedWords();
+    const auto after = device.read(device.affiliated);
     const auto colours = device.readAffiliated();
-    const auto depths = device.readDepths();
+    const auto depths = device.read<float>(device.depths);
     const auto classes = device.readClasses();
     std::size_t touched = 0, other_class = 0, other_depth = 0, other_parent = 0;
     std::array<std::uint32_t, 3> counts{};
@@ -114,14 +114,14 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
         const auto pixel_class = static_cast<std::uint8_t>(expected.resolved[i].pixel_class);
         if (kind == TileKind::kNone) {
             ++counts[pixel_class];
-            other_class += !parts.classes || classes[i] == pixel_class ? 0 : 1;
+            other_class += parts.classes && classes[i] != pixel_class;
             if (parts.components && pixel_class == gpu::kHole) {  // they are about to be grouped
-                other_parent += after[device.wordsPerPixel() * i] == i ? 0 : 1;
+                other_parent += after[device.wordsPerPixel() * i] != i;
                 continue;
             }
             if (parts.depths) {
                 const double depth = depths[i], its = expected.depths[i];
-                other_depth += (depth == 0.0) == (its == 0.0) ? 0 : 1;
+                other_depth += (depth == 0.0) != (its == 0.0);
                 differences.depth = std::max(differences.depth, std::abs(depth - its) / std::max(its, 1e-9));
             }
             for (int channel = 0; channel < 4; ++channel) {
@@ -134,21 +134,16 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
                     differences.colour, std::abs(static_cast<double>(colours[i][channel]) - its) - rounding);
             }
         } else if (!way.apart) {
-            other_class += !parts.classes || classes[i] == 0 ? 0 : 1;
+            other_class += parts.classes && classes[i] != 0;
             if (kind == TileKind::kHidden) {
-                touched += colours[i] == gpu::vec4(kBackground, 0.0f) && (!parts.depths || depths[i] == 0.0f)
-                               ? 0
-                               : 1;
+                touched += colours[i] != gpu::vec4(kBackground, 0.0f) || (parts.depths && depths[i] != 0.0f);
             } else {
-                touched += std::bit_cast<gpu::uint>(depths[i]) == StereoOnDevice::kUnwritten ? 0 : 1;
-                touched += isSamePixel(before, after, i, device) ? 0 : 1;
+                touched += std::bit_cast<gpu::uint>(depths[i]) != StereoOnDevice::kUnwritten ||
+                           !isSamePixel(before, after, i, device);
             }
         }
     }
-    CHECK(touched == 0);
-    CHECK(other_class == 0);
-    CHECK(other_depth == 0);
-    CHECK(other_parent == 0);
+    CHECK(these(touched, other_class, other_depth, other_parent) == these(0u, 0u, 0u, 0u));
     if (way.apart) { return; }
     const gpu::WarpCounters counters = device.readCounters();
     if (parts.classes) {
@@ -161,7 +156,7 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
     }
     if (way.rows == Rows::kOwn) { CHECK(device.readArrivals() == arrived.words); }
     // Added to what is there.
-    const auto errors = device.readTileErrors();
+    const auto errors = device.read(device.tile_errors);
     for (std::size_t t = 0; t < errors.size(); ++t) {
         if (!parts.errors || kinds[t] != TileKind::kNone) {
             CHECK(errors[t] == kNewcomers);
@@ -199,7 +194,7 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
         for (std::size_t t = 1; t < hidden.size(); t += 5) { hidden[t] = 1; }
         device.writeHidden(hidden);
     }
-    device.writeTileKinds(kindsOf(kinds));
+    device.write(device.tile_kinds, kindsOf(kinds));
     if (!moves_row) { device.reproject(hides, parts.forward); }
     parts.hidden_tiles = moves_row && hides;
     parts.moves_row = moves_row;
@@ -210,14 +205,15 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
     if (way.apart) { device.resample(parts); }
     // What remains of the two planes lies in tiles that are rendered.
     auto colours = device.readAffiliated();
-    auto depths = device.readDepths();
+    auto depths = device.read<float>(device.depths);
     for (std::size_t i = 0; i < colours.size(); ++i) {
         if (kinds[tileOf(i, c.sizePx())] == TileKind::kNone) { continue; }
         colours[i] = gpu::vec4(0.0f);
         depths[i] = 0.0f;
     }
     if (!parts.depths) { depths.clear(); }
-    return std::tuple(std::move(colours), std::move(depths), device.readClasses(), device.readTileErrors());
+    return std::tuple(std::move(colours), std::move(depths), device.readClasses(),
+                      device.read(device.tile_errors));
 }
 
 TEST_CASE_FIXTURE(Gpu,
@@ -239,22 +235,6 @@ TEST_CASE_FIXTURE(Gpu,
     // 7e-4.
     CHECK(all.other_tiles.size() <= 6);
     CHECK(all.error <= 0.002);
-}
-
-TEST_CASE_FIXTURE(Gpu, "resample does so whatever is asked of it together" * nightly()) {
-    std::vector<Way> ways;
-    for (const auto& [gap_px, forward] : {std::pair(0, false), std::pair(2, false), std::pair(5, false),
-                                          std::pair(0, true), std::pair(2, true)}) {
-        for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kOwnHalves, Rows::kSharedHalves}) {
-            for (const bool components : {false, true}) {
-                ways.push_back(
-                    {gap_px,
-                     rows,
-                     {.depths = true, .classes = true, .components = components, .forward = forward}});
-            }
-        }
-    }
-    CHECK(checkAll(*this, ways).depth <= 1e-6);
 }
 
 TEST_CASE_FIXTURE(Gpu,
@@ -301,17 +281,10 @@ TEST_CASE_FIXTURE(
     // Everything moves by whole pixels: what is at inverse depth 0.1 by 1 px to the left, what is at 0.4 by 4
     // px. Colours are the squares of the columns.
     const glm::uvec2 size_px(16, 1);
-    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 8.0, 0.5}, size_px}, 0.1);
-    StereoCase c{"steps", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
+    StereoCase c = computeCase(pairOf(parallelEyes(size_px)), [](auto x, auto) {
+        return ComputedPixel{{x * x / 256.0, 0.5, 0.25, 1.0}, x == 8 ? 0.4 : 0.1};
+    });
     c.settings.forward = true;
-    for (int x = 0; x < 16; ++x) {
-        const double w = x == 8 ? 0.4 : 0.1;
-        c.dominant.rgba.emplace_back(x * x / 256.0, 0.5, 0.25, 1.0);
-        c.dominant.depth.push_back(1.0 / w);
-        c.dominant.inverse_depth.push_back(w);
-        c.dominant.inverse_depth_squared.push_back(w * w);
-    }
-    roundToWords(c.dominant, c.settings);
     for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
         StereoOnDevice device = toDevice(*this, c, rows);
         device.reproject(/*hidden_tiles=*/false, /*forward=*/true);
@@ -342,18 +315,13 @@ TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than
         CAPTURE(width);
         const glm::uvec2 size_px(width, 2);
         const auto eyes = stereoPair({Pose{}, {200.0, 200.0, 0.5 * width, 1.0}, size_px}, 0.1);
-        StereoCase c{"ramp", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
-        for (std::uint32_t i = 0; i < 2 * width; ++i) {
-            const std::uint32_t x = i % width;
+        const StereoCase c = computeCase(pairOf(eyes), [](auto x, auto y) {
             // The last pixel of the longest row moves by 10.5 px: it arrives at a pixel's left end, and seen
             // from that pixel's middle it came from the border.
             const double w = x == 16383 ? 0.525 : (x / 50) % 3 == 1 ? 1.7 : 0.1 + 0.001 * (x % 50);
-            c.dominant.rgba.emplace_back(0.5 + 0.5 * std::sin(0.1 * x), x % 7 / 7.0, i / width, 1.0);
-            c.dominant.depth.push_back(1.0 / w);
-            c.dominant.inverse_depth.push_back(w);
-            c.dominant.inverse_depth_squared.push_back(w * w * (x % 11 == 0 ? 1.5 : 1.01));
-        }
-        roundToWords(c.dominant, c.settings);
+            return ComputedPixel{
+                {0.5 + 0.5 * std::sin(0.1 * x), x % 7 / 7.0, y, 1.0}, w, x % 11 == 0 ? std::sqrt(0.5) : 0.1};
+        });
         const Kinds kinds(tileCount(size_px), TileKind::kNone);
         const Parts parts{.errors = true, .classes = true};
         for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
@@ -383,24 +351,21 @@ TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, bu
     StereoOnDevice device = toDevice(*this, c, Rows::kShared);
     const auto kinds = markSome(device.tileCount());
     device.writeArrivals(arrived.words);
-    device.writeTileKinds(kindsOf(kinds));
+    device.write(device.tile_kinds, kindsOf(kinds));
     device.writeCounters({});
-    const auto before = device.readAffiliatedWords();
+    const auto before = device.read(device.affiliated);
     device.resample({.errors = true, .classes = true, .background = glm::vec3(0.5f)});
-    const auto after = device.readAffiliatedWords();
+    const auto after = device.read(device.affiliated);
     const auto colours = device.readAffiliated();
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < colours.size(); ++i) {
         const bool hidden = kinds[tileOf(i, c.sizePx())] == TileKind::kHidden;
         wrong +=
-            (hidden ? colours[i] == gpu::vec4(0.5f, 0.5f, 0.5f, 0.0f) : isSamePixel(before, after, i, device))
-                ? 0
-                : 1;
+            hidden ? colours[i] != gpu::vec4(0.5f, 0.5f, 0.5f, 0.0f) : !isSamePixel(before, after, i, device);
     }
     CHECK(wrong == 0);
-    CHECK(std::ranges::all_of(device.readTileErrors(), [](gpu::uint error) { return error == 0; }));
-    CHECK(
-        std::ranges::all_of(device.readClasses(), [](std::uint8_t pixel_class) { return pixel_class == 0; }));
+    CHECK(std::ranges::max(device.read(device.tile_errors)) == 0);
+    CHECK(std::ranges::max(device.readClasses()) == 0);
 }
 
 }  // SUITE(resample)

@@ -143,16 +143,45 @@ inline void roundToHalves(reference::Picture& picture) {
     }
 }
 
+inline reference::EyePair pairOf(const std::array<Eye, 2>& eyes, Side dominant = kLeft) {
+    return {eyes[dominant], eyes[1 - dominant]};
+}
+
 inline StereoCase makeCase(const std::string& name, const Scene& scene, const std::array<Eye, 2>& eyes,
                            Side dominant) {
     StereoCase c{name + (dominant == kLeft ? ", from the left" : ", from the right"),
                  scene,
-                 {eyes[dominant], eyes[1 - dominant]},
+                 pairOf(eyes, dominant),
                  {},
                  {}};
     c.dominant = reference::render(scene, c.eyes.source, {.inverse_depth_moments = true});
     roundToWords(c.dominant, c.settings);
     return c;
+}
+
+// A pixel of a picture that is computed: its depths differ by that share of it.
+struct ComputedPixel {
+    glm::dvec4 rgba{0.0};
+    double inverse_depth = 0.0, spread = 0.0;
+};
+template <typename At>
+StereoCase computeCase(const reference::EyePair& eyes, const At& at) {
+    const glm::uvec2 size_px = eyes.source.size_px;
+    StereoCase c{"computed", {}, eyes, {size_px, {}, {}, {}, {}}, {}};
+    for (std::uint32_t i = 0; i < size_px.x * size_px.y; ++i) {
+        const ComputedPixel pixel = at(i % size_px.x, i / size_px.x);
+        const double w = pixel.inverse_depth;
+        c.dominant.rgba.push_back(pixel.rgba);
+        c.dominant.depth.push_back(0.0);
+        c.dominant.inverse_depth.push_back(w);
+        c.dominant.inverse_depth_squared.push_back(w * w * (1.0 + pixel.spread * pixel.spread));
+    }
+    roundToWords(c.dominant, c.settings);
+    return c;
+}
+// Nothing is seen.
+inline StereoCase computeEmpty(const reference::EyePair& eyes) {
+    return computeCase(eyes, [](auto, auto) { return ComputedPixel{}; });
 }
 
 // Rectified, asymmetric and canted eyes, either of them dominant; far and near content, small and odd

@@ -1,12 +1,9 @@
 // Facts about the passes that reproject one eye's picture from the other's, reproject and newcomers
 // (resample: resample_test.cpp), each started from the output of the twin's previous pass. Where a place lies
 // on the border of a pixel, float32 may round to either side: there is a budget for such flips.
-#include "app/scores/metrics.h"
-#include "engine/picture/image_io.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
-#include "tests/shared_data.h"
 
 SUITE(stereo_passes) {
 
@@ -15,70 +12,6 @@ using reference::TileKind;
 
 // Steps of the depth's 26 bits between two words.
 gpu::uint stepsApart(gpu::uint a, gpu::uint b) { return std::max(a >> 6, b >> 6) - std::min(a >> 6, b >> 6); }
-
-struct Differences {
-    std::size_t pixels = 0, other = 0, off_by_step = 0;
-
-    // Words that agree up to a step of the depth, which float32's interpolation may round to the next one.
-    void count(const std::vector<gpu::uint>& got, const std::vector<Arrival>& expected) {
-        for (std::size_t i = 0; i < expected.size(); ++i) {
-            const gpu::uint word = packArrival(expected[i]);
-            const bool same = ((got[i] ^ word) & 63) == 0 && stepsApart(got[i], word) <= 1;
-            other += same ? 0 : 1;
-            off_by_step += same && got[i] != word ? 1 : 0;
-        }
-        pixels += expected.size();
-    }
-};
-
-struct Way {
-    int gap_px;
-    bool forward;
-    Rows rows;
-    bool hides = false;  // a lens hides some tiles, and nothing is moved from next to these
-};
-
-// All cases in each of these ways. Eyes side by side move pixels along rows, whatever their angles; canted
-// ones do not.
-void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
-    Differences all;
-    std::size_t held_back = 0;
-    for (StereoCase c : makeStereoCases()) {
-        const bool along_rows = c.name.find("canted") == std::string::npos;
-        CHECK(relate(c.eyes.source, c.eyes.target).rectified == along_rows);
-        for (const auto& [gap_px, forward, rows, hides] : ways) {
-            INFO(c.name, ", gap px ", gap_px, ", forward ", forward, ", hides ", hides);
-            c.settings.gap_px = gap_px;
-            c.settings.forward = forward;
-            c.settings.source_hidden.assign(hides ? tileCount(c.sizePx()) : 0, 0);
-            for (std::size_t t = 1; t < c.settings.source_hidden.size(); t += 5) {
-                c.settings.source_hidden[t] = 1;
-            }
-            StereoOnDevice device = toDevice(gpu, c, rows);
-            device.reproject(hides, forward);
-            const auto expected = reference::reproject(c.dominant, c.eyes, c.settings);
-            Differences differences;
-            differences.count(device.readArrivals(), expected);
-            CHECK(differences.other <= 3 + (hides ? 0 : differences.pixels / 2000));
-            // Along rows depths are copied, so only interpolated ones can be rounded.
-            if (along_rows && (gap_px == 0 || forward)) { CHECK(differences.off_by_step == 0); }
-            // What moved is unchanged.
-            CHECK(device.readMoving() == movingOf(c.dominant, c.settings));
-            all.pixels += differences.pixels;
-            all.other += differences.other;
-            all.off_by_step += differences.off_by_step;
-            if (!hides) { continue; }
-            c.settings.source_hidden.clear();
-            const auto unhidden = reference::reproject(c.dominant, c.eyes, c.settings);
-            for (std::size_t i = 0; i < expected.size(); ++i) {
-                held_back += expected[i].way == Arrival::kNone && unhidden[i].way != Arrival::kNone ? 1 : 0;
-            }
-        }
-    }
-    CHECK(held_back > 10000);
-    CHECK(share(all.other, all.pixels) <= 0.0001);
-    CHECK(share(all.off_by_step, all.pixels) <= 0.01);
-}
 
 struct Newcomers {
     std::size_t found, expected;
@@ -103,22 +36,22 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     newcomers.expected =
         reference::addNewcomers(expected, target, target_pairs, source_pairs, c.dominant, kinds, c.settings);
 
-    device.writeTileDepths(depthsOfTiles(c));
-    device.writeTileKinds(kindsOf(kinds));
+    device.write(device.tile_depths, depthsOfTiles(c));
+    device.write(device.tile_kinds, kindsOf(kinds));
     std::vector<gpu::uint> source_tiles(order.size(), 0);
     for (const reference::TilePair& pair : source_pairs) { ++source_tiles[pair.splat]; }
     device.addNewcomers(SceneOnDevice(gpu, c.scene, {c.eyes.source, c.eyes.target}, settings.near), order,
                         source_tiles);
     newcomers.found = device.readCounters().newcomers;
-    const auto errors = device.readTileErrors();
+    const auto errors = device.read(device.tile_errors);
     for (std::size_t t = 0; t < errors.size(); ++t) {
         newcomers.error += errors[t] / static_cast<double>(gpu::kErrorSteps);
         newcomers.expected_error += expected[t];
         newcomers.difference += std::abs(errors[t] / static_cast<double>(gpu::kErrorSteps) - expected[t]);
-        newcomers.tiles += expected[t] > 0.0 ? 1 : 0;
-        newcomers.other_tiles += (expected[t] > 0.0) != (errors[t] > 0) ? 1 : 0;
+        newcomers.tiles += expected[t] > 0.0;
+        newcomers.other_tiles += (expected[t] > 0.0) != (errors[t] > 0);
         newcomers.most = std::max(newcomers.most, errors[t]);
-        newcomers.in_marked += kinds[t] != TileKind::kNone && errors[t] != 0 ? 1 : 0;
+        newcomers.in_marked += kinds[t] != TileKind::kNone && errors[t] != 0;
     }
     return newcomers;
 }
@@ -131,53 +64,84 @@ std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
                                                    const std::vector<gpu::uint>& kinds,
                                                    const std::vector<gpu::uint>& errors) {
     const Eye eye = makeEye(size_px);
-    StereoCase c{"splats", makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
-    c.dominant.rgba.resize(std::size_t{size_px.x} * size_px.y);
+    const StereoCase c = computeEmpty({eye, eye});
     std::vector<std::uint32_t> order(splats.size());
     std::iota(order.begin(), order.end(), 0u);
     StereoOnDevice device = toDevice(gpu, c);
-    device.writeTileDepths(depths);
-    device.writeTileKinds(kinds);
-    device.writeTileErrors(errors);
-    device.addNewcomers(SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order,
+    device.write(device.tile_depths, depths);
+    device.write(device.tile_kinds, kinds);
+    device.write(device.tile_errors, errors);
+    device.addNewcomers(SceneOnDevice(gpu, makeScene(splats), {eye, eye}, 0.2), order,
                         std::vector<gpu::uint>(splats.size(), 0));
-    return {device.readCounters().newcomers, device.readTileErrors()};
+    return {device.readCounters().newcomers, device.read(device.tile_errors)};
 }
 
+// Eyes side by side move pixels along rows, whatever their angles; canted ones do not.
 TEST_CASE_FIXTURE(
     Gpu,
     "reproject brings to each pixel what the twin brings there, and nothing from beside what a lens hides") {
-    checkReproject(*this, {{0, false, Rows::kOwn},
-                           {2, false, Rows::kShared, true},
-                           {5, false, Rows::kSharedHalves},
-                           {20, false, Rows::kOwn},
-                           {2, true, Rows::kShared}});
-}
-TEST_CASE_FIXTURE(Gpu, "reproject does so with any gap, forward or not, in rows of any kind" * nightly()) {
-    std::vector<Way> ways;
-    for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
-        for (const int gap_px : {0, 2, 5, 20}) { ways.push_back({gap_px, false, rows, gap_px == 2}); }
-        ways.push_back({2, true, rows});
-        ways.push_back({2, false, rows});
+    struct Way {
+        int gap_px;
+        bool forward;
+        Rows rows;
+        bool hides = false;  // a lens hides some tiles, and nothing is moved from next to these
+    };
+    const std::array ways{Way{0, false, Rows::kOwn}, Way{2, false, Rows::kShared, true},
+                          Way{5, false, Rows::kSharedHalves}, Way{20, false, Rows::kOwn},
+                          Way{2, true, Rows::kShared}};
+    std::size_t pixels = 0, all_other = 0, all_off_by_step = 0, held_back = 0;
+    for (StereoCase c : makeStereoCases()) {
+        const bool along_rows = c.name.find("canted") == std::string::npos;
+        CHECK(relate(c.eyes.source, c.eyes.target).rectified == along_rows);
+        for (const auto& [gap_px, forward, rows, hides] : ways) {
+            INFO(c.name, ", gap px ", gap_px, ", forward ", forward, ", hides ", hides);
+            c.settings.gap_px = gap_px;
+            c.settings.forward = forward;
+            c.settings.source_hidden.assign(hides ? tileCount(c.sizePx()) : 0, 0);
+            for (std::size_t t = 1; t < c.settings.source_hidden.size(); t += 5) {
+                c.settings.source_hidden[t] = 1;
+            }
+            StereoOnDevice device = toDevice(*this, c, rows);
+            device.reproject(hides, forward);
+            const auto expected = reference::reproject(c.dominant, c.eyes, c.settings);
+            const auto words = device.readArrivals();
+            std::size_t other = 0, off_by_step = 0;
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                // float32's interpolation may round a depth to the next step.
+                const gpu::uint word = packArrival(expected[i]);
+                const bool same = ((words[i] ^ word) & 63) == 0 && stepsApart(words[i], word) <= 1;
+                other += !same;
+                off_by_step += same && words[i] != word;
+            }
+            CHECK(other <= 3 + (hides ? 0 : words.size() / 2000));
+            // Along rows depths are copied, so only interpolated ones can be rounded.
+            if (along_rows && (gap_px == 0 || forward)) { CHECK(off_by_step == 0); }
+            // What moved is unchanged.
+            CHECK(device.readMoving() == movingOf(c.dominant, c.settings));
+            pixels += words.size();
+            all_other += other;
+            all_off_by_step += off_by_step;
+            if (!hides) { continue; }
+            c.settings.source_hidden.clear();
+            const auto unhidden = reference::reproject(c.dominant, c.eyes, c.settings);
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                held_back += expected[i].way == Arrival::kNone && unhidden[i].way != Arrival::kNone;
+            }
+        }
     }
-    checkReproject(*this, ways);
+    CHECK(held_back > 10000);
+    CHECK(share(all_other, pixels) <= 0.0001);
+    CHECK(share(all_off_by_step, pixels) <= 0.01);
 }
 
 TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border") {
     // 10 px of disparity per unit of inverse depth: pixel 5 goes to -12, pixel 6 to 6.2, and all others out
     // of view to the left.
     const glm::uvec2 size_px(40, 1);
-    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 20.0, 0.5}, size_px}, 0.1);
-    StereoCase c{"stretch",
-                 {},
-                 {eyes[kLeft], eyes[kRight]},
-                 {size_px, std::vector(40, glm::dvec4(1.0)), std::vector(40, 0.0), std::vector(40, 9.0),
-                  std::vector(40, 0.0)},
-                 {}};
-    c.dominant.inverse_depth[5] = 1.75;
-    c.dominant.inverse_depth[6] = 0.03;
-    c.dominant.inverse_depth_squared[6] = 0.03 * 0.03 * (1.0 + 0x1p-8);
-    roundToWords(c.dominant, c.settings);
+    StereoCase c = computeCase(pairOf(parallelEyes(size_px)), [](auto x, auto) {
+        const double inverse_depth = x == 5 ? 1.75 : x == 6 ? 0.03 : 9.0;
+        return ComputedPixel{glm::dvec4(1.0), inverse_depth, x == 6 ? 0x1p-4 : 0.0};
+    });
     for (const auto& [gap_px, filled] : {std::pair(20, 6), std::pair(2, 0)}) {
         c.settings.gap_px = gap_px;
         StereoOnDevice device = toDevice(*this, c);
@@ -188,7 +152,7 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
         for (std::size_t x = 0; x < 40; ++x) {
             CHECK(unpackArrival(words[x]).way == expected[x].way);
             CHECK(unpackArrival(words[x]).spread == expected[x].spread);
-            between += expected[x].way == Arrival::kBetween ? 1 : 0;
+            between += expected[x].way == Arrival::kBetween;
         }
         CHECK(between == filled);
         CHECK(unpackArrival(words[6]).spread == 19);
@@ -236,14 +200,12 @@ TEST_CASE_FIXTURE(
     "what a sum holds") {
     // Eyes that look past each other, and in front of one of them discs over nearly all of its 40x35 tiles.
     const glm::uvec2 size_px(640, 560);
-    const auto turnBy = [](double degrees) {
-        return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 1.0, 0.0));
-    };
     const auto eyeAt = [&](double x, double degrees) {
-        return Eye{
-            {turnBy(degrees), {x, 0.0, 0.0}}, intrinsicsFromFovX(glm::radians(20.0), size_px), size_px};
+        const Eye eye{{.position = {x, 0.0, 0.0}}, intrinsicsFromFovX(glm::radians(20.0), size_px), size_px};
+        return turned(eye, glm::radians(degrees));
     };
     const std::array eyes{eyeAt(-0.03, -12.0), eyeAt(0.03, 12.0)};
+    const Pose& before = eyes[kRight].world_from_camera;
     struct Large {
         float scale;
         std::size_t splats;
@@ -255,16 +217,16 @@ TEST_CASE_FIXTURE(
          {Large{0.004f, 1, 0.3, 30, 64}, Large{0.006f, 2, 0.3, 65, 150}, Large{0.03f, 1, 0.3, 1025, 1400},
           Large{0.03f, 1, 8.0, 1025, 1400}, Large{0.03f, 3, 8.0, 1025, 1400}}) {
         INFO("large.scale ", large.scale, ", large.newcomer error ", large.newcomer_error);
-        const Splat splat{glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)),
-                          glm::quat(turnBy(12.0)), glm::vec2(large.scale), 0.9f, glm::vec3(0.5f)};
+        const Splat splat{.position = glm::vec3(transform(before, {0.0, 0.0, 0.5})),
+                          .rotation = glm::quat(before.orientation),
+                          .scale = glm::vec2(large.scale)};
         StereoCase c = makeCase("large", makeScene(std::vector(large.splats, splat)), eyes, kLeft);
         c.settings.newcomer_error = large.newcomer_error;
         const Newcomers newcomers =
             findNewcomers(*this, c, std::vector(std::size_t{40} * 35, TileKind::kNone));
         CHECK(newcomers.expected == large.splats);
         CHECK(newcomers.found == large.splats);
-        CHECK(newcomers.tiles >= large.least_tiles);
-        CHECK(newcomers.tiles <= large.most_tiles);
+        CHECK(newcomers.tiles == within(large.least_tiles, large.most_tiles));
         CHECK(newcomers.other_tiles == 0);
         // Fractions of steps are cut off.
         CHECK(newcomers.difference <= 1e-4 * newcomers.expected_error);
@@ -311,81 +273,5 @@ TEST_CASE_FIXTURE(Gpu,
         CHECK(errors == std::vector{0x7fffffffu});
     }
 }
-
-#ifdef BINOSPLAT_HAS_PNG
-struct Likeness {
-    double coverage, covered_db, db;
-};
-// From a picture that is moved by a disparity per pixel, 0 where that is unknown, to what another eye saw.
-Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disparity_px, const Image& truth,
-                    gpu::uint gap_px) {
-    // Eyes side by side with fx b = 1 px, so the inverse depth is the disparity in pixels.
-    gpu::WarpView view{};
-    view.rows_apart = 1;
-    view.target_from_source.shift = {-1.0f, 0.0f, 0.0f};
-    view.source_from_target.shift = {1.0f, 0.0f, 0.0f};
-    view.size_px = from.size_px;
-    view.size_tiles = tilesOf(from.size_px);
-    view.gap_px = gap_px;
-    std::vector<gpu::vec4> colours;
-    std::vector<gpu::uint> moving;
-    for (std::size_t i = 0; i < from.pixelCount(); ++i) {
-        const float* rgb = &from.values[i * static_cast<std::size_t>(from.channels)];
-        colours.emplace_back(rgb[0], rgb[1], rgb[2], 1.0f);
-        moving.push_back(disparity_px[i] > 0.0 ? packMoving(disparity_px[i], /*landed=*/true, /*spread=*/0)
-                                               : 0);
-    }
-    StereoOnDevice device(gpu, view, colours, moving, Rows::kShared);
-    device.reproject();
-    device.resample({.classes = true});
-    const auto classes = device.readClasses();
-    Image made{from.size_px, 3, {}};
-    for (const gpu::vec4& pixel : device.readAffiliated()) {
-        made.values.insert(made.values.end(), {pixel.x, pixel.y, pixel.z});
-    }
-    const double db = compare(made, truth).psnrDb(),
-                 coverage = share(std::ranges::count(classes, gpu::kCovered), classes.size());
-    for (std::size_t i = 0; i < made.values.size(); ++i) {
-        const std::size_t pixel = i / 3;
-        if (classes[pixel] != gpu::kCovered) {
-            made.values[i] = truth.values[pixel * static_cast<std::size_t>(truth.channels) + i % 3];
-        }
-    }
-    return {coverage, compare(made, truth).psnrDb() + 10.0 * std::log10(coverage), db};
-}
-
-TEST_CASE_FIXTURE(Gpu,
-                  "a real picture moved by its true disparity is the other eye's, better than by whole "
-                  "pixels; moved the wrong way it is "
-                  "no likeness, and infinitely far away it keeps its bytes" *
-                      needsSharedData() * nightly()) {
-    const auto data = sharedData();
-    if (!data) { return; }
-    // With whole pixels: 27.8 and 26.7 dB on 77 % (Scharstein and Szeliski 2003).
-    for (const auto& [name, least_db] : {std::pair("teddy", 28.3), std::pair("cones", 27.2)}) {
-        CAPTURE(name);
-        const auto folder = *data / "middlebury" / name;
-        const Image left = readPicture(folder / "im2.png"), right = readPicture(folder / "im6.png"),
-                    read = readPicture(folder / "disp2.pgm");
-        REQUIRE(left.size_px == glm::uvec2(450, 375));
-        std::vector<double> disparity_px;
-        for (std::size_t i = 0; i < read.pixelCount(); ++i) {
-            disparity_px.push_back(
-                static_cast<double>(read.values[i * static_cast<std::size_t>(read.channels)]) * 255.0 / 4.0);
-        }
-        const Likeness landed = likenessOf(*this, left, disparity_px, right, 0),
-                       filled = likenessOf(*this, left, disparity_px, right, 2);
-        CHECK(std::min(landed.covered_db, filled.covered_db) >= least_db);
-        CHECK(std::min(landed.coverage, filled.coverage) >= 0.77);
-        CHECK(filled.db >= landed.db);
-        CHECK(likenessOf(*this, left, disparity_px, left, 0).covered_db < 15.0);
-        CHECK(likenessOf(*this, right, disparity_px, left, 0).covered_db < 15.0);
-        // Less than half of a float32's last place in the column.
-        const Likeness still = likenessOf(*this, right, std::vector(disparity_px.size(), 1e-30), right, 2);
-        CHECK(still.coverage == 1.0);
-        CHECK(still.db == std::numeric_limits<double>::infinity());
-    }
-}
-#endif
 
 }  // SUITE(stereo_passes)

@@ -32,21 +32,21 @@ public:
           counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
           colours_(areHalves(rows) ? gpu.upload("dominant colours", packHalves(colours))
                                    : gpu.upload("dominant colours", colours)),
-          affiliated_(gpu.allocate<gpu::uint>("affiliated colours", wordsPerPixel() * pixelCount())),
-          depths_(gpu.allocate<gpu::uint>("affiliated depths", pixelCount())),
           classes_(gpu.allocate<gpu::uint>("classes", std::size_t{view.size_tiles.x} * view.size_px.y)),
-          tile_kinds_(gpu.allocate<gpu::uint>("tile kinds", tileCount())),
-          tile_costs_(gpu.allocate<gpu::uint>("tile costs", tileCount())),
-          tile_errors_(gpu.allocate<gpu::uint>("tile errors", tileCount())),
-          tile_depths_(gpu.allocate<gpu::uint>("tile depths", tileCount())),
-          tile_mask_(gpu.allocate<gpu::uint>("tile mask", maskWords())),
           shown_mask_(gpu.allocate<gpu::uint>("shown mask", maskWords())),
-          bins_(gpu.allocate<gpu::uint>("bins", gpu::kDepthBins)),
           boxes_(gpu.allocate<gpu::PixelBox>("boxes", boxes)),
-          box_capacity_(boxes) {
+          box_capacity_(boxes),
+          affiliated(gpu.allocate<gpu::uint>("affiliated colours", wordsPerPixel() * pixelCount())),
+          depths(gpu.allocate<gpu::uint>("affiliated depths", pixelCount())),
+          tile_kinds(gpu.allocate<gpu::uint>("tile kinds", tileCount())),
+          tile_costs(gpu.allocate<gpu::uint>("tile costs", tileCount())),
+          tile_errors(gpu.allocate<gpu::uint>("tile errors", tileCount())),
+          tile_depths(gpu.allocate<gpu::uint>("tile depths", tileCount())),
+          tile_mask(gpu.allocate<gpu::uint>("tile mask", maskWords())),
+          bins(gpu.allocate<gpu::uint>("bins", gpu::kDepthBins)) {
         static_assert(gpu::kDepthBins == gpu::kPriceBins);
-        fill({&affiliated_, &depths_, &classes_, &tile_costs_, &tile_depths_}, kUnwritten);
-        fill({&tile_kinds_, &tile_errors_, &tile_mask_, &bins_}, 0);
+        fill({&affiliated, &depths, &classes_, &tile_costs, &tile_depths}, kUnwritten);
+        fill({&tile_kinds, &tile_errors, &tile_mask, &bins}, 0);
         fill({&shown_mask_}, ~0u);
         if (isShared(rows)) {
             writeRows({std::vector<gpu::uint>(pixelCount(), 0), moving});
@@ -63,45 +63,45 @@ public:
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
-        fill({&tile_errors_, &tile_depths_, &tile_mask_, &bins_}, kUnwritten);
+        fill({&tile_errors, &tile_depths, &tile_mask, &bins}, kUnwritten);
         dispatch(WeighKernel{.rectified = rectified()},
-                 gpu::WeighPass{.warp = view(),
-                                .ranges = range_buffer.address<gpu::uvec2>(),
+                 gpu::WeighPass{.warp = at(view_buffer_),
+                                .ranges = at(range_buffer),
                                 .moving = may_move ? moving() : gpu::DeviceAddress<gpu::uint>{},
-                                .tile_kinds = words(tile_kinds_),
-                                .tile_costs = words(tile_costs_),
-                                .tile_errors = words(tile_errors_),
-                                .tile_depths = words(tile_depths_),
-                                .tile_mask = words(tile_mask_),
-                                .price_bins = words(bins_),
+                                .tile_kinds = at(tile_kinds),
+                                .tile_costs = at(tile_costs),
+                                .tile_errors = at(tile_errors),
+                                .tile_depths = at(tile_depths),
+                                .tile_mask = at(tile_mask),
+                                .price_bins = at(bins),
                                 .shown_mask = shownMask(hidden_tiles),
-                                .visible = lists.address<gpu::ListState>(),
+                                .visible = at(lists),
                                 .masked_tiles = lists.address<gpu::ListState>(sizeof(gpu::ListState)),
-                                .counters = counters(),
+                                .counters = at(counters_),
                                 .kinds_given = 1},
                  tileGroups());
     }
     void boundDepths() {
         dispatch(DepthBoundsKernel{.half_colours = areHalves(rows_)},
-                 gpu::DepthBoundsPass{.warp = view(),
-                                      .colours = colours_.address<gpu::vec4>(),
-                                      .half_colours = colours_.address<gpu::uvec2>(),
+                 gpu::DepthBoundsPass{.warp = at(view_buffer_),
+                                      .colours = at(colours_),
+                                      .half_colours = at(colours_),
                                       .moving = moving(),
-                                      .bins = words(bins_)},
+                                      .bins = at(bins)},
                  {groupsOver(view_.size_tiles.x, gpu::kBoundsTiles), view_.size_tiles.y});
     }
     void findEdgeRois(bool hidden_tiles = false) {
         dispatch(EdgeRoisKernel{.rectified = rectified()},
-                 gpu::EdgeRoisPass{.warp = view(),
-                                   .bins = words(bins_),
-                                   .tile_kinds = words(tile_kinds_),
+                 gpu::EdgeRoisPass{.warp = at(view_buffer_),
+                                   .bins = at(bins),
+                                   .tile_kinds = at(tile_kinds),
                                    .shown_mask = shownMask(hidden_tiles),
-                                   .counters = counters()},
+                                   .counters = at(counters_)},
                  tileGroups());
     }
     void reproject(bool hidden_tiles = false, bool forward = false) {
         dispatch(ReprojectKernel{.rectified = rectified(), .forward = forward},
-                 gpu::ReprojectPass{.warp = view(),
+                 gpu::ReprojectPass{.warp = at(view_buffer_),
                                     .moving = moving(),
                                     .arrivals = arrivals(),
                                     .shown_mask = shownMask(hidden_tiles)},
@@ -119,14 +119,14 @@ public:
         dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
-                                    .warp = view(),
-                                    .tile_depths = words(tile_depths_),
-                                    .order = order_buffer.address<gpu::uint>(),
-                                    .visible = lists.address<gpu::ListState>(),
-                                    .source_sets = set_buffer.address<gpu::uvec2>(),
-                                    .tile_kinds = words(tile_kinds_),
-                                    .tile_errors = words(tile_errors_),
-                                    .counters = counters(),
+                                    .warp = at(view_buffer_),
+                                    .tile_depths = at(tile_depths),
+                                    .order = at(order_buffer),
+                                    .visible = at(lists),
+                                    .source_sets = at(set_buffer),
+                                    .tile_kinds = at(tile_kinds),
+                                    .tile_errors = at(tile_errors),
+                                    .counters = at(counters_),
                                     .chunk_bits = scene.scene.chunkBits(),
                                     .eye = 1,
                                     .is_dimmed = scene.scene.traits().is_dimmed},
@@ -152,42 +152,41 @@ public:
         const std::uint32_t width = view_.size_px.x;
         const bool shares = row_source != gpu::kPlacesGiven && width <= longestSharedRow(gpu_.context());
         const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
-        dispatch(
-            ResampleKernel{.rectified = rectified(),
-                           .row_steps = row_steps,
-                           .half_colours = areHalves(rows_),
-                           .row_source = row_source,
-                           .way = parts.classes   ? gpu::kDoesAny
-                                  : parts.errors  ? gpu::kPredicts
-                                  : parts.forward ? gpu::kCopies
-                                                  : gpu::kSamples},
-            gpu::ResamplePass{.warp = view(),
-                              .source = colours_.address<gpu::vec4>(),
-                              .half_source = colours_.address<gpu::uvec2>(),
-                              .moving = parts.moves_row ? moving() : arrivals(),
-                              .target = affiliated_.address<gpu::vec4>(),
-                              .half_target = affiliated_.address<gpu::uvec2>(),
-                              .depths = parts.depths ? depths_.address<float>() : gpu::DeviceAddress<float>{},
-                              .tile_kinds = words(tile_kinds_),
-                              .tile_errors = parts.errors || parts.odd ? words(tile_errors_)
-                                                                       : gpu::DeviceAddress<gpu::uint>{},
-                              .pixel_classes = words(classes_),
-                              .counters = counters(),
-                              .shown_mask = shownMask(parts.hidden_tiles),
-                              .background = parts.background,
-                              .first_row = parts.odd ? 1u : 0u,
-                              .copies_colours = parts.forward ? 1u : 0u,
-                              .groups_holes = parts.components ? 1u : 0u},
-            {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
+        dispatch(ResampleKernel{.rectified = rectified(),
+                                .row_steps = row_steps,
+                                .half_colours = areHalves(rows_),
+                                .row_source = row_source,
+                                .way = parts.classes   ? gpu::kDoesAny
+                                       : parts.errors  ? gpu::kPredicts
+                                       : parts.forward ? gpu::kCopies
+                                                       : gpu::kSamples},
+                 gpu::ResamplePass{.warp = at(view_buffer_),
+                                   .source = at(colours_),
+                                   .half_source = at(colours_),
+                                   .moving = parts.moves_row ? moving() : arrivals(),
+                                   .target = at(affiliated),
+                                   .half_target = at(affiliated),
+                                   .depths = parts.depths ? at(depths) : gpu::DeviceAddress<float>{},
+                                   .tile_kinds = at(tile_kinds),
+                                   .tile_errors = parts.errors || parts.odd ? at(tile_errors)
+                                                                            : gpu::DeviceAddress<gpu::uint>{},
+                                   .pixel_classes = at(classes_),
+                                   .counters = at(counters_),
+                                   .shown_mask = shownMask(parts.hidden_tiles),
+                                   .background = parts.background,
+                                   .first_row = parts.odd ? 1u : 0u,
+                                   .copies_colours = parts.forward ? 1u : 0u,
+                                   .groups_holes = parts.components ? 1u : 0u},
+                 {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
     }
     // All steps of the pass, whatever the counters say about holes.
     void findComponents() {
-        const gpu::ComponentsPass pass{.warp = view(),
-                                       .pixels = affiliated_.address<gpu::ComponentPixel>(),
-                                       .pixel_classes = words(classes_),
-                                       .boxes = boxes_.address<gpu::PixelBox>(),
-                                       .tile_kinds = words(tile_kinds_),
-                                       .counters = counters(),
+        const gpu::ComponentsPass pass{.warp = at(view_buffer_),
+                                       .pixels = at(affiliated),
+                                       .pixel_classes = at(classes_),
+                                       .boxes = at(boxes_),
+                                       .tile_kinds = at(tile_kinds),
+                                       .counters = at(counters_),
                                        .box_capacity = box_capacity_,
                                        .slots_apart = areHalves(rows_) ? 1u : 2u};
         for (std::uint32_t step = 0; step < 3; ++step) {
@@ -196,47 +195,28 @@ public:
         dispatch(ComponentsKernel{.step = 3}, pass, {3, 1});
     }
 
+    template <typename T = gpu::uint>
+    [[nodiscard]] std::vector<T> read(const Buffer& array) {
+        return gpu_.readBack<T>(array, array.bytes() / sizeof(T));
+    }
+    void write(const Buffer& array, const std::vector<gpu::uint>& values) { gpu_.upload(array, values); }
+
     [[nodiscard]] std::vector<gpu::uint> readArrivals() {
-        return !isShared(rows_) ? gpu_.readBack<gpu::uint>(arrivals_, pixelCount()) : readRows(0);
+        return isShared(rows_) ? readRows(0) : read(arrivals_);
     }
     [[nodiscard]] std::vector<gpu::uint> readMoving() {
-        return !isShared(rows_) ? gpu_.readBack<gpu::uint>(moving_, pixelCount()) : readRows(1);
+        return isShared(rows_) ? readRows(1) : read(moving_);
     }
     [[nodiscard]] std::vector<gpu::vec4> readAffiliated() {
-        if (!areHalves(rows_)) { return gpu_.readBack<gpu::vec4>(affiliated_, pixelCount()); }
-        return unpackHalves(gpu_.readBack<gpu::uvec2>(affiliated_, pixelCount()));
+        if (!areHalves(rows_)) { return read<gpu::vec4>(affiliated); }
+        return unpackHalves(read<gpu::uvec2>(affiliated));
     }
-    [[nodiscard]] std::vector<gpu::uint> readAffiliatedWords() {
-        return gpu_.readBack<gpu::uint>(affiliated_, wordsPerPixel() * pixelCount());
-    }
-    // Bytes of a pixel's colour.
+    // Of a pixel's colour.
     [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
-    [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
-    [[nodiscard]] gpu::WarpCounters readCounters() {
-        return gpu_.readBack<gpu::WarpCounters>(counters_, 1)[0];
-    }
-    [[nodiscard]] std::vector<gpu::uint> readTileErrors() {
-        return gpu_.readBack<gpu::uint>(tile_errors_, tileCount());
-    }
-    [[nodiscard]] std::vector<gpu::uint> readTileDepths() {
-        return gpu_.readBack<gpu::uint>(tile_depths_, tileCount());
-    }
-    [[nodiscard]] std::vector<gpu::uint> readTileKinds() {
-        return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount());
-    }
-    [[nodiscard]] std::vector<gpu::uint> readTileCosts() {
-        return gpu_.readBack<gpu::uint>(tile_costs_, tileCount());
-    }
-    [[nodiscard]] std::vector<gpu::uint> readTileMask() {
-        return gpu_.readBack<gpu::uint>(tile_mask_, maskWords());
-    }
-    // Depths, or prices.
-    [[nodiscard]] std::vector<gpu::uint> readBins() {
-        return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins);
-    }
+    [[nodiscard]] gpu::WarpCounters readCounters() { return read<gpu::WarpCounters>(counters_)[0]; }
     [[nodiscard]] std::vector<std::uint8_t> readClasses() {
         const std::size_t row_words = view_.size_tiles.x;
-        const auto packed = gpu_.readBack<gpu::uint>(classes_, row_words * view_.size_px.y);
+        const auto packed = read(classes_);
         std::vector<std::uint8_t> classes;
         for (std::size_t y = 0; y < view_.size_px.y; ++y) {
             for (std::size_t x = 0; x < view_.size_px.x; ++x) {
@@ -259,12 +239,7 @@ public:
         }
         gpu_.upload(classes_, packed);
     }
-    void writeAffiliatedWords(const std::vector<gpu::uint>& values) { gpu_.upload(affiliated_, values); }
     void writeCounters(const gpu::WarpCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
-    void writeTileKinds(const std::vector<gpu::uint>& kinds) { gpu_.upload(tile_kinds_, kinds); }
-    void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
-    void writeTileDepths(const std::vector<gpu::uint>& depths) { gpu_.upload(tile_depths_, depths); }
-    void writeBins(const std::vector<gpu::uint>& bins) { gpu_.upload(bins_, bins); }
     // One byte per tile, which is 1 if the dominant eye's lens hides it.
     void writeHidden(const std::vector<std::uint8_t>& hidden) {
         std::vector<std::uint8_t> shown;
@@ -304,20 +279,12 @@ private:
     [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
     [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }
 
-    [[nodiscard]] static gpu::DeviceAddress<gpu::uint> words(const Buffer& buffer) {
-        return buffer.address<gpu::uint>();
-    }
-    [[nodiscard]] gpu::DeviceAddress<gpu::WarpView> view() const {
-        return view_buffer_.address<gpu::WarpView>();
-    }
-    [[nodiscard]] gpu::DeviceAddress<gpu::WarpCounters> counters() const {
-        return counters_.address<gpu::WarpCounters>();
-    }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const {
-        return !isShared(rows_) ? words(arrivals_) : words(affiliated_);
+        return at(isShared(rows_) ? affiliated : arrivals_);
     }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving() const {
-        return !isShared(rows_) ? words(moving_) : words(affiliated_).at(view_.size_px.x);
+        return isShared(rows_) ? affiliated.address<gpu::uint>(sizeof(gpu::uint) * view_.size_px.x)
+                               : at(moving_);
     }
 
     template <typename K>
@@ -335,7 +302,7 @@ private:
     // The first or the second part of each row of colours, with a word per pixel.
     [[nodiscard]] std::vector<gpu::uint> readRows(std::size_t part) {
         const std::size_t width = view_.size_px.x;
-        const auto all = readAffiliatedWords();
+        const auto all = read(affiliated);
         std::vector<gpu::uint> values;
         for (std::size_t y = 0; y < view_.size_px.y; ++y) {
             const auto row = all.begin() + static_cast<std::ptrdiff_t>((wordsPerPixel() * y + part) * width);
@@ -346,27 +313,30 @@ private:
     // The first parts, or both.
     void writeRows(const std::vector<std::vector<gpu::uint>>& parts) {
         const std::size_t width = view_.size_px.x;
-        auto all = readAffiliatedWords();
+        auto all = read(affiliated);
         for (std::size_t p = 0; p < parts.size(); ++p) {
             for (std::size_t i = 0; i < parts[p].size(); ++i) {
                 all[(wordsPerPixel() * (i / width) + p) * width + i % width] = parts[p][i];
             }
         }
-        gpu_.upload(affiliated_, all);
+        gpu_.upload(affiliated, all);
+    }
+
+    // Where the dominant eye's lens hides parts; null if nowhere.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> shownMask(bool hidden_tiles) const {
+        return hidden_tiles ? at(shown_mask_) : gpu::DeviceAddress<gpu::uint>{};
     }
 
     Gpu& gpu_;
     Rows rows_;
     gpu::WarpView view_;
-    Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
-    // Where the dominant eye's lens hides parts; null if nowhere.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> shownMask(bool hidden_tiles) const {
-        return hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{};
-    }
-
-    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_mask_, shown_mask_, bins_, boxes_;
+    Buffer view_buffer_, counters_, colours_, classes_, shown_mask_, boxes_;
     Buffer moving_, arrivals_;  // if rows have buffers of their own
     std::uint32_t box_capacity_;
+
+public:
+    // Of the affiliated eye; bins are depths, or prices.
+    Buffer affiliated, depths, tile_kinds, tile_costs, tile_errors, tile_depths, tile_mask, bins;
 };
 
 inline gpu::WarpView viewOfCase(const StereoCase& c) {

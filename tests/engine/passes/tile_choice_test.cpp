@@ -11,14 +11,8 @@ using reference::PixelClass;
 using reference::Resolved;
 using reference::TileKind;
 
-// Parallel eyes 0.1 apart with a focal length of 100 px: 10 px of disparity per unit of inverse depth.
 StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
-    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px}, 0.1);
-    StereoCase c{"plain", {}, {eyes[dominant], eyes[1 - dominant]}, {}, {}};
-    c.dominant = {size_px, std::vector<glm::dvec4>(std::size_t{size_px.x} * size_px.y), {}, {}, {}};
-    for (auto* plane : {&c.dominant.depth, &c.dominant.inverse_depth, &c.dominant.inverse_depth_squared}) {
-        plane->resize(c.dominant.rgba.size());
-    }
+    StereoCase c = computeEmpty(pairOf(parallelEyes(size_px), dominant));
     c.settings.choice = TileChoice::kPaper;
     return c;
 }
@@ -58,18 +52,18 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
         if (moved && mask[i] != 0) { words[words_per_pixel * i] = static_cast<gpu::uint>(i); }
     }
     StereoOnDevice device(gpu, viewOfCase(c), {}, {}, rows, boxes);
-    device.writeTileKinds(kindsOf(kinds));
+    device.write(device.tile_kinds, kindsOf(kinds));
     device.writeClasses(classes);
-    device.writeAffiliatedWords(words);
+    device.write(device.affiliated, words);
     device.findComponents();
     const std::size_t components = reference::markComponents(resolved, kinds, size_px, margin_px, boxes);
     const gpu::WarpCounters counters = device.readCounters();
     CHECK(counters.components == components);
-    CHECK(device.readTileKinds() == kindsOf(kinds));
+    CHECK(device.read(device.tile_kinds) == kindsOf(kinds));
     CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
     CHECK(device.readClasses() == classes);
     // Except for the holes, nothing has changed.
-    auto after = device.readAffiliatedWords();
+    auto after = device.read(device.affiliated);
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (classes[i / words_per_pixel] == static_cast<std::uint8_t>(PixelClass::kHole)) {
             after[i] = words[i];
@@ -95,7 +89,7 @@ TEST_CASE_FIXTURE(Gpu,
     std::vector<gpu::uint> expected(gpu::kDepthBins, 0);
     // These come from five rows.
     expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 10;
-    CHECK(device.readBins() == expected);
+    CHECK(device.read(device.bins) == expected);
     CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
 }
 
@@ -160,7 +154,7 @@ TEST_CASE_FIXTURE(
             INFO(c.name, ", rows ", static_cast<int>(rows));
             StereoOnDevice device = toDevice(*this, c, rows);
             device.boundDepths();
-            bins = device.readBins();
+            bins = device.read(device.bins);
             const auto expected = reference::boundDepths(c.dominant, c.settings.depth_choice);
             std::uint32_t flips = 0;
             for (std::size_t b = 0; b < bins.size(); ++b) {
@@ -177,7 +171,7 @@ TEST_CASE_FIXTURE(
             c.settings.edge_samples = std::array{1, 64, 300}[way / 4];
             INFO(c.name, ", way ", way);
             StereoOnDevice device = toDevice(*this, c);
-            device.writeBins(bins);
+            device.write(device.bins, bins);
             device.findEdgeRois();
             const Borders expected =
                 reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
@@ -185,7 +179,7 @@ TEST_CASE_FIXTURE(
             const gpu::WarpCounters counters = device.readCounters();
             CHECK(counters.borders_px ==
                   glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
-            CHECK(device.readTileKinds() == kinds);
+            CHECK(device.read(device.tile_kinds) == kinds);
             CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));
         }
     }
@@ -209,8 +203,8 @@ TEST_CASE_FIXTURE(Gpu,
             StereoOnDevice device = toDevice(*this, c);
             std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
             reference::markHidden(before, c.settings);
-            device.writeTileKinds(kindsOf(before));
-            device.writeBins(bins);
+            device.write(device.tile_kinds, kindsOf(before));
+            device.write(device.bins, bins);
             device.findEdgeRois(/*hidden_tiles=*/true);
             const Borders borders =
                 reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
@@ -218,7 +212,7 @@ TEST_CASE_FIXTURE(Gpu,
             const auto without_lens = std::ranges::count(expected, TileKind::kEdge);
             reference::markHidden(expected, c.settings);
             reference::markBehindHidden(expected, c.eyes, c.settings);
-            CHECK(device.readTileKinds() == kindsOf(expected));
+            CHECK(device.read(device.tile_kinds) == kindsOf(expected));
             CHECK(device.readCounters().edge_tiles == std::ranges::count(expected, TileKind::kEdge));
             CHECK(std::ranges::count(expected, TileKind::kEdge) > without_lens);
         }

@@ -31,12 +31,12 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     for (std::size_t t = 0; t < stale.size(); t += 7) {
         stale[t] = stale[t] == gpu::kTileHidden ? stale[t] : gpu::kTilePredicted;
     }
-    device.writeTileKinds(stale);
+    device.write(device.tile_kinds, stale);
     device.weigh(ranges, !c.settings.source_hidden.empty(), kVisible);
     const reference::Weighed expected = reference::weigh(c.dominant, ranges, c.eyes, c.settings);
-    const auto costs = device.readTileCosts(), kinds = device.readTileKinds();
+    const auto costs = device.read(device.tile_costs), kinds = device.read(device.tile_kinds);
     const gpu::WarpCounters counters = device.readCounters();
-    const auto depths = device.readTileDepths(), expected_depths = depthsOfTiles(c);
+    const auto depths = device.read(device.tile_depths), expected_depths = depthsOfTiles(c);
     std::size_t other = 0, wrong_kinds = 0, wrong_depths = 0;
     std::uint64_t picture_cost = 0, saved_cost = 0, moved = 0;
     for (std::size_t t = 0; t < costs.size(); ++t) {
@@ -76,9 +76,9 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
           (moves ? (kVisible + gpu::kNewcomersBlock - 1) / gpu::kNewcomersBlock : 0));
     // Values to which others add start at zero.
     const auto isZero = [](gpu::uint value) { return value == 0; };
-    CHECK(std::ranges::all_of(device.readTileErrors(), isZero));
-    CHECK(std::ranges::all_of(device.readTileMask(), isZero));
-    CHECK(std::ranges::all_of(device.readBins(), isZero));
+    CHECK(std::ranges::all_of(device.read(device.tile_errors), isZero));
+    CHECK(std::ranges::all_of(device.read(device.tile_mask), isZero));
+    CHECK(std::ranges::all_of(device.read(device.bins), isZero));
     return other;
 }
 
@@ -155,7 +155,7 @@ TEST_CASE_FIXTURE(Gpu,
         StereoOnDevice device = toDevice(*this, c);
         device.weigh(ranges, false, kVisible);
         CHECK(device.readCounters().moves == (moves ? 1u : 0u));
-        CHECK(device.readTileCosts() == std::vector<gpu::uint>{pairs + 16, 56, 16, 19});
+        CHECK(device.read(device.tile_costs) == std::vector<gpu::uint>{pairs + 16, 56, 16, 19});
     }
     // Where nothing was moved before, an eighth of the saving is held back, and nothing is moved yet.
     const auto counted = [](gpu::uint saved) { return saved - saved / gpu::kResumePart; };
@@ -170,7 +170,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
     StereoOnDevice device = toDevice(*this, c);
     device.weigh({{0, 5000000}, {7, 4194294}, {0, 4194288}, {0, 100}}, false, kVisible);
-    CHECK(device.readTileCosts() ==
+    CHECK(device.read(device.tile_costs) ==
           std::vector<gpu::uint>{gpu::kMaxTileCost, gpu::kMaxTileCost, gpu::kMaxTileCost, 116});
 }
 

@@ -36,6 +36,9 @@ inline Eye makeEye(glm::uvec2 size_px) {
     return {Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px};
 }
 
+// 0.1 apart, so that pixels move 10 px to the left per unit of inverse depth.
+inline std::array<Eye, 2> parallelEyes(glm::uvec2 size_px) { return stereoPair(makeEye(size_px), 0.1); }
+
 // Random splats around an eye at the origin: near and far, large and thin, behind it, through the near plane,
 // outside the picture.
 inline Scene makeCloud(int count, unsigned seed) {
