@@ -34,7 +34,7 @@ std::size_t countMoved(const AffiliatedFrame& made) {
     std::size_t moved = 0;
     for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
         const std::uint32_t kind = made.tile_kinds.empty() ? 0 : made.tile_kinds[tileOf(i, picture.size_px)];
-        moved += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted ? 1 : 0;
+        moved += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted;
     }
     return moved;
 }

@@ -146,7 +146,7 @@ TEST_CASE_FIXTURE(
             if (twin.coarse[tileOf(i, view.eye.size_px)] == 0) { continue; }
             ++pixels;
             const double made = eye.history.pixels[i] ? eye.history.pixels[i]->inverse_depth : 0.0;
-            off += std::abs(made - inverse_depth) > 1e-3 * inverse_depth ? 1 : 0;
+            off += std::abs(made - inverse_depth) > 1e-3 * inverse_depth;
         }
         CHECK(coarse > 20);
         CHECK(off <= pixels / 100);
@@ -205,8 +205,8 @@ TEST_CASE_FIXTURE(Gpu,
         for (std::size_t t = 0; t < errors.size(); ++t) {
             if (beyond[t] == 0) { CHECK(errors[t] == 0.0); }
             of_beyond += beyond[t];
-            coarse += errors[t] > 0.0 ? 1 : 0;
-            noticed += shares[t] * errors[t] >= static_cast<double>(gpu::kLeastSeenError) ? 1 : 0;
+            coarse += errors[t] > 0.0;
+            noticed += shares[t] * errors[t] >= static_cast<double>(gpu::kLeastSeenError);
         }
         CHECK(100 * noticed <= coarse);
         CHECK(3 * coarse > of_beyond);

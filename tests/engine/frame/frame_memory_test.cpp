@@ -184,7 +184,7 @@ TEST_CASE_FIXTURE(Atelier,
     for (int tenths = 1; tenths <= 12; ++tenths) {
         StereoFrame frame(small, on_small, kNoRoom);
         goOn(frame, small, (bytes.with_all - bytes.with_few) * static_cast<std::uint64_t>(tenths) / 10, last);
-        waited += countOf(last, "frames_done_again") > 1 && shownBy(frame) == whole ? 1 : 0;
+        waited += countOf(last, "frames_done_again") > 1 && shownBy(frame) == whole;
     }
     CHECK(waited > 0);
 }

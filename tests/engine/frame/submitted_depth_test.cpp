@@ -56,8 +56,8 @@ BetweenWalls countBetween(Gpu& gpu, StereoFrame& frame, const Eye& eye, int side
             };
             return !isAt(2.0) && !isAt(4.0);
         };
-        between.submitted += isOff(static_cast<double>(depths[i])) ? 1 : 0;
-        between.mean += isOff(static_cast<double>(sums.values[i] / alpha)) ? 1 : 0;
+        between.submitted += isOff(static_cast<double>(depths[i]));
+        between.mean += isOff(static_cast<double>(sums.values[i] / alpha));
     }
     return between;
 }

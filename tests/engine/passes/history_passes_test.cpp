@@ -33,7 +33,7 @@ std::size_t countOtherDepths(const Image& depths, const reference::History& hist
         const double inverse_depth = history.pixels[i] ? history.pixels[i]->inverse_depth : 0.0;
         const double expected = inverse_depth > 0.0 ? history.rgba[i].a / inverse_depth : 0.0;
         // Depths are half floats.
-        other += isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;
+        other += !isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6);
     }
     return other;
 }
@@ -142,11 +142,11 @@ void checkFirst(Gpu& gpu, const Way& way) {
             if (isHidden(tileOf(i, eye.size_px))) { continue; }  // nobody looks there
             ++pixels;
             const bool same = a.has_value() == b.has_value();
-            other_depths += same && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)) ? 0 : 1;
+            other_depths += !(same && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)));
             // On a single surface, the spread is only rounding.
             constexpr std::uint32_t kRounding = 12;
             other_spreads +=
-                same && (!a || std::max(a->spread, kRounding) == std::max(b->spread, kRounding)) ? 0 : 1;
+                !(same && (!a || std::max(a->spread, kRounding) == std::max(b->spread, kRounding)));
         }
     }
     CHECK(share(other_depths, pixels) <= 0.01);
@@ -288,7 +288,7 @@ TEST_CASE_FIXTURE(
                     // Up to a step for each thread's sum.
                     CHECK(std::abs(a.growth[q] - b.growth[q]) <= 1e-3 * b.growth[q] + 2e-4);
                     CHECK(isNear(a.errors[q], b.errors[q], 1e-6, 0.0));
-                    rendered += kinds[e][t] == TileKind::kPredicted && a.growth[q] > 1e-3 ? 1 : 0;
+                    rendered += kinds[e][t] == TileKind::kPredicted && a.growth[q] > 1e-3;
                 }
             }
             CHECK(twin.rgba == made[e].history.rgba);
@@ -346,7 +346,7 @@ TEST_CASE("what lies in a box is seen in its rectangle, also where the box reach
             REQUIRE(glm::all(glm::greaterThanEqual(glm::dvec2(rects[0].end_px), place)));
             ++seen;
         }
-        through += is_before && is_behind ? 1 : 0;
+        through += is_before && is_behind;
     }
     CHECK(seen > 1000);
     CHECK(unseen_boxes > 100);
@@ -426,7 +426,7 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
             for (int q = 0; q < 4; ++q) {
                 REQUIRE(std::abs(static_cast<double>(marked[t].errors[q]) -
                                  twin[t].errors[static_cast<std::size_t>(q)]) < 1e-5);
-                changed += marked[t].errors[q] != tiles[t].errors[q] ? 1 : 0;
+                changed += marked[t].errors[q] != tiles[t].errors[q];
             }
         }
         CHECK(changed > 0);

@@ -131,28 +131,28 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
         // All depths of a block change by the ratio of its middle's.
         const bool same =
             a.has_value() == b.has_value() && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
-        differences.other_depths += same ? 0 : 1;
-        differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;
+        differences.other_depths += !same;
+        differences.other_spreads += a && b && a->spread != b->spread;
     }
     differences.pixels += twin.rgba.size();
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
         const reference::HistoryTile &a = made.history.tiles[t], &b = twin.tiles[t];
         for (std::size_t q = 0; q < 4; ++q) {
-            differences.other_growth += isNear(a.growth[q], b.growth[q], 1e-5, 1e-8) ? 0 : 1;
+            differences.other_growth += !isNear(a.growth[q], b.growth[q], 1e-5, 1e-8);
             // A pixel's error is rounded down to steps.
-            differences.other_grown += isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kErrorSteps) ? 0 : 1;
+            differences.other_grown += !isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kErrorSteps);
             differences.grown += a.grown[q];
             differences.twin_grown += b.grown[q];
         }
         differences.other_gradients +=
-            isNear(a.squared_gradient, b.squared_gradient, 0.02, 264.0 / kErrorSteps) ? 0 : 1;
-        differences.other_tiles += a.cost == b.cost && a.age == b.age && a.unseen == b.unseen ? 0 : 1;
+            !isNear(a.squared_gradient, b.squared_gradient, 0.02, 264.0 / kErrorSteps);
+        differences.other_tiles += !(a.cost == b.cost && a.age == b.age && a.unseen == b.unseen);
     }
     reference::growErrors(twin.tiles);
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
         for (std::size_t q = 0; q < 4; ++q) {
             differences.other_errors +=
-                isNear(made.history.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
+                !isNear(made.history.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4);
         }
     }
     differences.tiles += twin.tiles.size();

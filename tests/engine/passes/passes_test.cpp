@@ -344,15 +344,13 @@ TEST_CASE_FIXTURE(
         const Culled culled = cullOnDevice(*this, device, 0, 1), turned = cullOnDevice(*this, device, 1, 1),
                      both = cullOnDevice(*this, device, 0, 2);
         std::size_t missed = 0, kept = 0;
-        for (const reference::TilePair& pair : twin.pairs) {
-            missed += culled.has(twin.order[pair.splat]) ? 0 : 1;
-        }
-        for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i) ? 1 : 0; }
+        for (const reference::TilePair& pair : twin.pairs) { missed += !culled.has(twin.order[pair.splat]); }
+        for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i); }
         CHECK(missed == 0);
         CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
         std::size_t wrong_counts = 0, ones = 0;
         for (std::size_t w = 0; w < culled.bits.size(); ++w) {
-            wrong_counts += w % kGroupWords != 0 || culled.group_offsets[w / kGroupWords] == ones ? 0 : 1;
+            wrong_counts += !(w % kGroupWords != 0 || culled.group_offsets[w / kGroupWords] == ones);
             ones += static_cast<std::size_t>(std::popcount(culled.bits[w]));
             REQUIRE(both.bits[w] == (culled.bits[w] | turned.bits[w]));
         }

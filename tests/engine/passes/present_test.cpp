@@ -84,7 +84,7 @@ std::size_t countOff(std::span<const std::uint32_t> actual, const Bytes& expecte
         for (int shift = 0; shift < 32; shift += 8) {
             const int a = static_cast<int>((actual[i] >> shift) & 255),
                       b = static_cast<int>((expected[i] >> shift) & 255);
-            off += std::abs(a - b) > tolerance ? 1 : 0;
+            off += std::abs(a - b) > tolerance;
         }
     }
     return off;
@@ -252,7 +252,7 @@ TEST_CASE_FIXTURE(Gpu,
                 CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-5));
                 const double mean = how.near / silhouette.sums[i], front = how.near * silhouette.front[i],
                              back = how.near * silhouette.back[i];
-                mixed += mean < 0.95 * front && mean > 1.05 * back ? 1 : 0;
+                mixed += mean < 0.95 * front && mean > 1.05 * back;
                 const double share = silhouette.share[i];
                 if (std::abs(share - 0.5) < 0.03) { continue; }  // half of either, or so: the wall is slanted
                 CHECK(expected[i] == doctest::Approx(share > 0.5 ? front : back).epsilon(0.03));

@@ -97,14 +97,12 @@ Expected expectOf(const Tiles& eye, const Chosen& got) {
         const double error = hidden ? 0.0 : reference::worthOf(twin[t]);
         expected.costs[t] = hidden ? 0 : reference::costOf(twin[t]);
         for (std::size_t q = 0; q < 4; ++q) {
-            other += isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]),
-                            twin[t].errors[q], 1e-6, 0.0)
-                         ? 0
-                         : 1;
+            other += !isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]),
+                             twin[t].errors[q], 1e-6, 0.0);
         }
-        other += coarse || isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps) ? 0 : 1;
-        other += coarse || (got.errors[t] == 0) == (error == 0.0) ? 0 : 1;
-        other += got.costs[t] == expected.costs[t] ? 0 : 1;
+        other += !(coarse || isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps));
+        other += !(coarse || (got.errors[t] == 0) == (error == 0.0));
+        other += got.costs[t] != expected.costs[t];
         expected.errors[t] = coarse ? error : got.errors[t] / kErrorSteps;
     }
     CHECK(other == 0);
@@ -173,11 +171,11 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const std::vector<gpu::uint> kinds = kindsOf(expected[e].kinds);
         std::size_t other = 0;
-        for (std::size_t t = 0; t < kinds.size(); ++t) { other += got[e].kinds[t] == kinds[t] ? 0 : 1; }
+        for (std::size_t t = 0; t < kinds.size(); ++t) { other += got[e].kinds[t] != kinds[t]; }
         CHECK(other <= (how.gaze ? 1 + kinds.size() / 100 : 0));
         gpu::uint waiting = 0;
         for (std::size_t t = 0; t < kinds.size(); ++t) {
-            waiting += prices[e][t] >= reference::kOverPrice && kinds[t] == 0 ? 1 : 0;
+            waiting += prices[e][t] >= reference::kOverPrice && kinds[t] == 0;
         }
         if (how.error_bound > 0.0) { CHECK(got[e].counters.waiting_tiles == waiting); }
         checkLists(got[e], eyes[e].size);
@@ -323,13 +321,13 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
             const bool is_coarse = got.errors[t] == gpu::kSeenCoarsely;
             CHECK((is_coarse || got.errors[t] == tiles.errors[t]));
             CHECK((is_coarse == (shares[t] <= 0.25) || std::abs(shares[t] - 0.25) < 1e-4));
-            coarse += is_coarse ? 1 : 0;
-            unnoticed += tiles.kinds[t] == 0 && tiles.errors[t] != 0 && got.prices[t] == 0 ? 1 : 0;
+            coarse += is_coarse;
+            unnoticed += tiles.kinds[t] == 0 && tiles.errors[t] != 0 && got.prices[t] == 0;
             if (got.prices[t] == 0) { continue; }
             ++priced;
             const int off = static_cast<int>(got.prices[t] >> 22) - static_cast<int>(expected[t].value_or(0));
             CHECK(std::abs(off) <= 1);
-            other_bins += off != 0 ? 1 : 0;
+            other_bins += off != 0;
         }
         CHECK(priced > 100);
         CHECK(unnoticed > 100);

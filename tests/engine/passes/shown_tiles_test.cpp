@@ -57,12 +57,12 @@ void checkPicture(const Image& picture, const Image& whole, const Image& depth, 
     std::size_t not_background = 0, other = 0;
     for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
         if (lenses()[side][tileOf(i, kSizePx)] == 0) {
-            other += samePixel(picture, whole, i) ? 0 : 1;
+            other += !samePixel(picture, whole, i);
         } else {
             const float* pixel = &picture.values[4 * i];
             const bool background =
                 std::equal(pixel, pixel + 4, std::array{0.125f, 0.25f, 0.5f, 0.0f}.begin());
-            not_background += background && depth.values[i] == 0.0f ? 0 : 1;
+            not_background += !(background && depth.values[i] == 0.0f);
         }
     }
     CHECK(not_background == 0);
@@ -127,7 +127,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
         std::uint64_t again = 0, predicted_cost = 0;
         for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
             CHECK((made.tile_kinds[t] == gpu::kTileHidden) == (lenses()[other][t] != 0));
-            again += made.tile_kinds[t] != 0 && made.tile_kinds[t] != gpu::kTileHidden ? 1 : 0;
+            again += made.tile_kinds[t] != 0 && made.tile_kinds[t] != gpu::kTileHidden;
             predicted_cost += made.tile_kinds[t] == gpu::kTilePredicted ? twin.tile_costs[t] : 0;
         }
         // Measured: five in one frame, where a splat that is large for its tiles is only just visible to the
@@ -144,9 +144,9 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
         for (std::size_t i = 0; i < depth.pixelCount(); ++i) {
             const std::size_t tile = tileOf(i, kSizePx);
             const std::uint32_t kind = made.tile_kinds[tile];
-            moved_px += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted ? 1 : 0;
+            moved_px += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted;
             const double d = static_cast<double>(depth.values[i]), e = twin.affiliated_depth[i];
-            other_depth += same_kind[tile] != 0 && !(std::abs(d - e) <= 1e-3 * std::abs(e) + 1e-4) ? 1 : 0;
+            other_depth += same_kind[tile] != 0 && !(std::abs(d - e) <= 1e-3 * std::abs(e) + 1e-4);
         }
         CHECK(countOf(made.result, "pixels_covered") + countOf(made.result, "pixels_gap") +
                   countOf(made.result, "pixels_hole") ==
@@ -194,7 +194,7 @@ TEST_CASE_FIXTURE(
                 most = std::max(most, std::abs(2.0 * valueAt(column, row) - valueAt(column, row - 1) -
                                                valueAt(column, row + 1)));
             }
-            means += made.tile_kinds[t] == 0 && most < 1e-6 ? 1 : 0;
+            means += made.tile_kinds[t] == 0 && most < 1e-6;
         }
         chosen += countOf(made.result, "tiles_predicted");
         chosen_everywhere += countOf(everywhere.result, "tiles_predicted");
@@ -230,7 +230,7 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
             // one.
             if (i % kSizePx.x < 8 * 16) { continue; }
             ++beyond;
-            wrong += samePixel(made.pictures[kRight], whole, i) ? 0 : 1;
+            wrong += !samePixel(made.pictures[kRight], whole, i);
         }
         CHECK(beyond > 0);
         CHECK(wrong == 0);

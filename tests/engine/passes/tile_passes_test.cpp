@@ -221,7 +221,7 @@ TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are 
         for (std::size_t i = 0; i < halves.size(); ++i) {
             for (const glm::uvec2 shift : {glm::uvec2(0), glm::uvec2(16)}) {
                 const glm::ivec2 apart((rounded[i] >> shift & 0xffffu) - (halves[i] >> shift & 0xffffu));
-                other += glm::all(glm::lessThanEqual(glm::abs(apart), glm::ivec2(1))) ? 0 : 1;
+                other += !glm::all(glm::lessThanEqual(glm::abs(apart), glm::ivec2(1)));
             }
         }
         CHECK(other == 0);
@@ -255,18 +255,18 @@ TEST_CASE_FIXTURE(Gpu,
             std::size_t touched = 0;
             for (std::size_t i = 0; i < raster.pixels; ++i) {
                 const std::size_t row = 4 * width * (i / width), x = i % width;
-                touched += words[row + x] == 0 && words[row + 2 * width + x] == kUnwritten ? 0 : 1;
+                touched += !(words[row + x] == 0 && words[row + 2 * width + x] == kUnwritten);
                 const reference::Arrival got = unpackArrival(words[row + width + x]);
                 const auto expected = reference::movingPixel(truth, i, {.depth_choice = choice});
                 CHECK(got.way != reference::Arrival::kBetween);
                 if ((got.way == reference::Arrival::kLanded) != expected.has_value()) {
                     ++other;
                 } else if (expected) {
-                    other += isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
+                    other += !isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12);
                     // Spreads of less than 2^-10 are rounding errors of sums in single precision; rounding
                     // also decides between two codes.
                     other_spread +=
-                        got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7 ? 0 : 1;
+                        !(got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7);
                 }
             }
             CHECK(touched == 0);

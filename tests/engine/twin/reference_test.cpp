@@ -76,7 +76,7 @@ TEST_CASE(
                         const bool in_box = x >= box.x && x < box.z && y >= box.y && y < box.w;
                         const bool in_run = std::ranges::any_of(
                             runs, [&](auto run) { return x >= run.begin && x < run.end; });
-                        left_out += visible[i] != 0 && in_box && in_run ? 0 : 1;
+                        left_out += !(visible[i] != 0 && in_box && in_run);
                     }
                 }
                 for (const std::uint32_t tile : tiles) { expected.push_back({tile, i}); }
