@@ -39,9 +39,7 @@ std::size_t countMoved(const AffiliatedFrame& made) {
     return moved;
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "without a distance between the eyes, the other eye's picture is the dominant one's, byte for byte") {
+TEST_CASE_FIXTURE(Gpu, "without a distance between them, both eyes have the same picture, byte for byte") {
     const ViewedScene view = viewAtelier();
     KeptFrame frame(context(), view.scene);
     for (const gpu::uint depth_choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
@@ -63,8 +61,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "every mode gives the same bytes from run to run, whatever room its lists begin with") {
+TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes again, whatever room its lists begin with") {
     const ViewedScene view = viewAtelier();
     const auto eyes = headsetEyes(view.eye, glm::radians(5.0));
     const GpuScene scene(context(), view.scene);
@@ -86,8 +83,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "tiles that are rendered again are those of the full render, and more budget is never worse") {
+TEST_CASE_FIXTURE(Gpu, "tiles rendered again are the full render's, and more budget is never worse") {
     const ViewedScene view = viewAtelier({192, 192});
     KeptFrame frame(context(), view.scene);
     for (const auto& eyes : {stereoPair(view.eye, 0.063), headsetEyes(view.eye, glm::radians(5.0))}) {
@@ -131,9 +127,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "what each eye culls and sorts by itself makes two-pass's tiles, and with parallel eyes "
-                  "shared lists' picture") {
+TEST_CASE_FIXTURE(Gpu, "eyes that cull and sort by themselves have two-pass's tiles") {
     const ViewedScene view = viewAtelier();
     KeptFrame frame(context(), view.scene);
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {

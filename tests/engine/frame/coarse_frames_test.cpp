@@ -73,9 +73,7 @@ reference::CoarsePicture twinOf(const ViewedScene& view, const FrameSettings& se
                                    settings.hidden_tiles[0]);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a picture with coarse tiles is the twin's, of discs and of Gaussians, also in odd sizes "
-                  "and behind a lens that hides parts") {
+TEST_CASE_FIXTURE(Gpu, "a picture with coarse tiles is the twin's, in odd sizes and behind lenses, too") {
     for (const ViewedScene& view :
          {viewWide({381, 279}), viewGaussians({143, 97}, false), viewGaussians({96, 80}, true)}) {
         KeptFrame frame(context(), view.scene);
@@ -95,8 +93,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "however many threads blend a cell, and however many tiles there are, coarse tiles are the twin's") {
+TEST_CASE_FIXTURE(Gpu, "however many threads and tiles there are, coarse tiles are the twin's") {
     std::uint64_t in_full = 0, coarse = 0;
     int run = 0;
     for (const glm::uvec2& size_px :
@@ -119,9 +116,8 @@ TEST_CASE_FIXTURE(
     CHECK(in_full > 10);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it is expected to lack") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it lacks") {
     const ViewedScene view = viewWide({176, 144});
     const std::array<Eye, 2> eyes{view.eye, view.eye};
     for (const bool halves : {false, true}) {
@@ -164,8 +160,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to "
-                  "such tiles sees them in full") {
+                  "what a coarse tile lacks counts as soon as it would be seen, and then it is rendered") {
     // With a squared error of 0.3072.
     const reference::HistoryTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
     CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
@@ -187,9 +182,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(compare(other->readPicture(0), made).psnrDb() > 65.0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "where an eye looks its picture is the one in full, and what it sees of the rest is too "
-                  "little to be noticed") {
+TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the full one, and the rest is hardly noticed") {
     const ViewedScene view = viewWide({512, 448}, 60000);
     KeptFrame frame(context(), view.scene);
     for (const Gaze& gaze : {Gaze{{0.4, 0.0, 1.0}, 0.0}, Gaze{{-0.7, 0.3, 1.0}, 0.1}}) {
@@ -218,8 +211,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "an eye that may look everywhere, or of which nothing is known, sees all in full, byte for byte") {
+TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or nobody knows where, sees all in full") {
     const ViewedScene view = viewWide({200, 160});
     KeptFrame frame(context(), view.scene);
     const FrameSettings clear = settingsFor({{0.0, 0.0, 1.0}, 1.6});
@@ -244,8 +236,7 @@ TEST_CASE_FIXTURE(
     CHECK(frame.readPicture(0).values == whole.values);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "lists that are too short grow, and coarse tiles take a word a tile that other frames give back") {
+TEST_CASE_FIXTURE(Gpu, "lists that are too short grow, and what coarse tiles take is given back") {
     const ViewedScene view = viewWide({240, 200});
     const FrameSettings settings = settingsFor({{0.0, 0.0, 1.0}, 0.2});
     KeptFrame short_of(context(), view.scene, {.first_capacity = {256, 256}});

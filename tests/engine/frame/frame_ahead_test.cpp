@@ -6,9 +6,7 @@ SUITE(frame_ahead) {
 
 using namespace test::ahead;
 
-TEST_CASE_FIXTURE(Atelier,
-                  "a frame that is not waited for is the one that is, to the byte, in every mode, also after "
-                  "another size, in memory of its own or in a part of the largest one's") {
+TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, in every mode and size") {
     const std::array<glm::uvec2, 5> sizes_px{{{96, 96}, {64, 80}, {96, 96}, {81, 50}, {90, 96}}};
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted,
                             Mode::kAlternate, Mode::kTemporal}) {
@@ -49,8 +47,7 @@ TEST_CASE_FIXTURE(Atelier, "frames of a scene as it was go on with it, and none 
     CHECK(shownBy(frame) == shownBy(other));
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "what a frame says of itself comes two frames later, the first and the last at once") {
+TEST_CASE_FIXTURE(Atelier, "what a frame says of itself comes two frames later, the first and last at once") {
     KeptFrame frame(context(), scene);
     const auto waited = StereoFrame::beside(frame);
     std::vector<std::uint64_t> visible;
@@ -73,9 +70,7 @@ TEST_CASE_FIXTURE(Atelier,
     CHECK_FALSE(frame.finish().has_value());
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "lists have room ahead however many pairs a pixel has, and so however many of them are "
-                  "sorted in the picture") {
+TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has") {
     StereoFrame counting(context(), scene);
     const auto pairsOf = [&](const std::array<Eye, 2>& eyes) {
         const FrameResult result = counting.render(eyes, seeing());
@@ -105,9 +100,7 @@ TEST_CASE_FIXTURE(Atelier,
     CHECK(tried > 15);
 }
 
-TEST_CASE_FIXTURE(
-    Atelier,
-    "walking is no jump, whatever the near plane and the scene's size; a wearer's step and snap turn are") {
+TEST_CASE_FIXTURE(Atelier, "walking is no jump, at any scale; a wearer's step and snap turn are") {
     // Whether a frame is waited for, in which case it reports at once.
     const auto waits = [&](double units_per_metre, double metres, double degrees) {
         KeptFrame frame(context(), scene);
@@ -163,10 +156,7 @@ TEST_CASE_FIXTURE(Atelier, "other sizes, modes and hidden tiles wait for the fra
     CHECK_FALSE(frame.finish().has_value());
 }
 
-TEST_CASE_FIXTURE(
-    Atelier,
-    "frames with the same kernels draw their own scenes, also on two threads at once, and one of them can "
-    "go") {
+TEST_CASE_FIXTURE(Atelier, "frames with the same kernels draw their own scenes, also on two threads") {
     const ViewedScene other_view = viewBuiltin("builtin:fence", {96, 96});
     const GpuScene other_scene(context(), other_view.scene);
     const auto pictureOf = [](StereoFrame& frame, const Eye& eye) {

@@ -6,10 +6,7 @@ SUITE(frame_memory) {
 
 using namespace test::ahead;
 
-TEST_CASE_FIXTURE(
-    Atelier,
-    "where there is memory for the largest size, frames of another one wait for nothing and take "
-    "no more; to larger ones lists come first") {
+TEST_CASE_FIXTURE(Atelier, "with memory for the largest size, frames of other sizes wait for nothing") {
     const glm::uvec2 most_px(96, 96), least_px(32, 32);
     const auto eyesOf = [&](glm::uvec2 size_px) { return eyesAt(ofSize(view.eye, size_px), 0); };
     for (const Mode mode :
@@ -46,9 +43,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    Atelier,
-    "after a jump a frame is waited for, and done again once at most unseen, whatever lists have no room") {
+TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again once at most, unseen") {
     for (const Mode mode :
          {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(nameOf(mode));
@@ -74,9 +69,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "where a jump may be seen, no frame after it is waited for: it is whole if lists have "
-                  "room, and else one soon is") {
+TEST_CASE_FIXTURE(Atelier, "where a jump may be seen, no frame is waited for, and a whole one comes soon") {
     const auto there = eyesAt(view.eye, 0), before = eyesAt(turned(view.eye, 0.5), 0),
                nowhere = eyesAt(awayFrom(view.eye), 0);
     for (const Mode mode : {Mode::kShared, Mode::kTemporal}) {
@@ -111,9 +104,7 @@ TEST_CASE_FIXTURE(Atelier,
     }
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "lists that fill up grow on a thread of their own, before a frame is cut short, and while "
-                  "no frame is waited for") {
+TEST_CASE_FIXTURE(Atelier, "lists that fill up grow beside the frames, before one of these is cut short") {
     KeptFrame frame(context(), scene, kNoRoom);
     FrameSettings settings = seeing();
     settings.waits_for_lists = false;
@@ -133,9 +124,7 @@ TEST_CASE_FIXTURE(Atelier,
     CHECK(context().memoryUse().current_bytes > bytes);
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "where longer lists do not fit beside those that are there, the frame that needs them is "
-                  "waited for") {
+TEST_CASE_FIXTURE(Atelier, "where longer lists do not fit beside the old ones, the frame is waited for") {
     const auto all = eyesAt(view.eye, 0);
     std::array<Eye, 2> less = all;
     KeptFrame counting(context(), scene);
@@ -189,8 +178,7 @@ TEST_CASE_FIXTURE(Atelier,
     CHECK(waited > 0);
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "a frame that finds no room without a jump is counted, and the next one is whole") {
+TEST_CASE_FIXTURE(Atelier, "a frame that finds no room without a jump is counted, and the next is whole") {
     // Nothing moves but a wall of splats that comes through the near plane.
     const auto eyes = eyesAt(view.eye, 0);
     KeptFrame frame(context(), scene, kNoRoom);
@@ -236,9 +224,7 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     CHECK(tight.validationMessages().empty());
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "pictures that the device has no memory for are refused before a frame is begun, and "
-                  "smaller ones go on") {
+TEST_CASE_FIXTURE(Atelier, "pictures that do not fit are refused before a frame is begun") {
     const Context tight({.device = {}, .validation = kValidation, .memory_limit_bytes = 64u << 20});
     const GpuScene held(tight, view.scene);
     StereoFrame frame(tight, held);

@@ -108,9 +108,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "the atelier and clouds of discs and of 3D Gaussians, dimmed or not, are rendered as the "
-                  "twin renders them") {
+TEST_CASE_FIXTURE(Gpu, "the atelier and clouds of discs and 3D Gaussians are rendered as by the twin") {
     const glm::dvec3 background(0.1, 0.2, 0.3);
     checkAgainstTwin(*this, viewBuiltin("builtin:atelier", {256, 256}, 20000), makeSettings(background),
                      80.0);
@@ -121,15 +119,13 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "the atelier of many splats is rendered as the twin renders it, in large" * nightly()) {
+TEST_CASE_FIXTURE(Gpu, "the large atelier of many splats is rendered as by the twin" * nightly()) {
     // Measured: 86.5.
     checkAgainstTwin(*this, viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}),
                      80.0);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "colours of light are blended as light, over the light of the background, and then encoded") {
+TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over that of the background, then encoded") {
     ViewedScene view = viewGaussians({320, 240}, false);
     const glm::dvec3 background(0.1, 0.4, 0.8);
     reference::Picture blended = renderTwin(view, makeSettings(lightOf(background)));
@@ -163,8 +159,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "colours above 1 are blended as they are, light or not: whoever shows them clamps them") {
+TEST_CASE_FIXTURE(Gpu, "colours above 1 are blended as they are: whoever shows them clamps them") {
     ViewedScene view = viewGaussians({64, 48}, false);
     const std::size_t stride = 3 * static_cast<std::size_t>(shCoefficientCount(view.scene.sh_degree));
     for (std::size_t i = 0; i < view.scene.size(); ++i) { view.scene.sh[i * stride] += 8.0f; }
@@ -176,8 +171,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a flat 3D Gaussian that faces the eye is its disc with the low-pass's variance added") {
+TEST_CASE_FIXTURE(Gpu, "a flat 3D Gaussian that faces the eye is its disc with the low-pass's variance") {
     const glm::uvec2 size_px(160, 120);
     const Eye eye = makeEye(size_px);
     std::vector<Splat> narrow, wide;

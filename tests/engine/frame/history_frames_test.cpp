@@ -60,8 +60,7 @@ private:
     std::array<Eye, 2> eyes_;
 };
 
-TEST_CASE_FIXTURE(
-    Gpu, "where no history is kept, temporal is predicted and alternate is shared, frame after frame") {
+TEST_CASE_FIXTURE(Gpu, "where no history is kept, temporal is predicted and alternate is shared") {
     const ViewedScene view = viewAtelier(kSizePx);
     for (const auto& [mode, same] :
          {std::pair(Mode::kTemporal, Mode::kPredicted), std::pair(Mode::kAlternate, Mode::kShared)}) {
@@ -77,8 +76,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a head that stands still sees the full render within 30 frames, and then for good, for no work") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a head that stands still sees the full render within 30 frames, and then for no work") {
     Walk walk(context(), makeSettings(Mode::kTemporal));
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
@@ -91,9 +90,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "with work for nearly all both eyes are nearly the full render, parallel or canted, "
-                  "whatever room lists had") {
+TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full render") {
     const ViewedScene view = viewAtelier(kSizePx);
     const GpuScene scene(context(), view.scene);
     // Parallel eyes are rendered side by side, canted ones one after the other.
@@ -112,8 +109,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a walk keeps its quality within the budget, in both eyes and without a frame that costs more") {
+TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, without a frame that costs more") {
     struct Way {
         Mode mode;
         bool coarse;
@@ -166,8 +162,8 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spe
     CHECK(errorOf(looks) < 0.8 * errorOf(makeSettings(Mode::kTemporal)));
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a history comes from less than the way to the other eye; without one a frame is waited for") {
+TEST_CASE_FIXTURE(Gpu,
+                  "a history comes from less than the way to the other eye; else frames are waited for") {
     constexpr double kStepMetres = 0.0033166;  // the step of walkedEyes
     const auto countFull = [](Walk& walk) {
         const auto shown = walk.shown(), full = walk.full();
@@ -198,9 +194,7 @@ TEST_CASE_FIXTURE(
 }
 
 // The resolution changes as it does when a governor looks for the one that holds the rate.
-TEST_CASE_FIXTURE(Gpu,
-                  "a history of another size or of other angles is a history like any other, also when both "
-                  "change in each frame") {
+TEST_CASE_FIXTURE(Gpu, "a history of another size or other angles is a history like any other") {
     Walk walk(context(), withBudget(Mode::kTemporal, 0.4));
     for (int step = 0; step < 8; ++step) {
         Eye eye = viewAtelier(kSizePx).eye;
@@ -219,8 +213,7 @@ TEST_CASE_FIXTURE(Gpu,
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "alternate renders one eye in full, in turn, and the other is what its last full render "
-                  "shows from there") {
+                  "alternate renders one eye in full, in turn, and the other from its last such picture") {
     Walk walk(context(), makeSettings(Mode::kAlternate));
     walk.go(0.0);
     std::array<int, 2> turns{};
@@ -254,9 +247,7 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a hist
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "with coarse tiles, a head that stands still comes to see what it sees without a history, "
-                  "for next to no work") {
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still sees what it sees without a history") {
     Walk walk(context(), withCoarse(Mode::kTemporal), viewWide(kSizePx));
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }

@@ -40,9 +40,7 @@ Scene makeMist(std::size_t splats, bool gaussians) {
     return scene;
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a slanted plane through a cloud hides at every pixel what its twin hides, of discs and of "
-                  "Gaussians, for one eye and both") {
+TEST_CASE_FIXTURE(Gpu, "a slanted plane through a cloud hides at every pixel what its twin hides") {
     Eye eye{{}, intrinsicsFromFovX(1.0, {100, 84}), {100, 84}};
     const glm::dvec3 normal = glm::normalize(glm::dvec3(0.5, 0.3, 1.0));
     for (const bool gaussians : {false, true}) {
@@ -85,8 +83,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a mesh behind everything hides nothing, to the last bit, and one before everything all") {
+TEST_CASE_FIXTURE(Gpu, "a mesh behind everything hides nothing, to the last bit, and one before it all") {
     const Scene mist = makeMist(300, false);
     const GpuScene scene(context(), mist);
     KeptFrame frame(context(), scene);

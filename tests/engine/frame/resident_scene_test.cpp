@@ -73,17 +73,14 @@ TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte fo
                           0.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte, in every mode" *
-                           nightly()) {
+TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, in every mode" * nightly()) {
     const ViewedScene view = viewOrdered(), gaussians = viewGaussians({96, 80}, true);
     checkPagesAreTheScene(context(), view.scene, view.eye, kModes, 0.0);
     checkPagesAreTheScene(context(), view.scene, view.eye, std::span(kModes).subspan(1), 0.05);
     checkPagesAreTheScene(context(), inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "what is there is seen, and nothing else, whatever came and went, and hundreds of changes "
-                  "take no memory") {
+TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, and hundreds of changes take no memory") {
     const ViewedScene view = viewOrdered({160, 144});
     constexpr std::uint32_t kParts = 16;
     const std::vector<Scene> parts = inParts(view.scene, kParts);
@@ -149,8 +146,7 @@ TEST_CASE_FIXTURE(Atelier, "a fade multiplies opacities, and at 0 nothing is see
     }
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "a part that is longer than what a frame may bring is seen once all of it is there") {
+TEST_CASE_FIXTURE(Atelier, "a part that is longer than what a frame brings is seen once all of it is there") {
     const std::uint32_t pages = pagesOf(view.scene.size());
     ResidentScene resident(context(), traitsOf(view.scene),
                            {.capacity_pages = pages, .most_bytes_a_frame = 1});
@@ -188,8 +184,7 @@ TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused,
     CHECK_THROWS_AS(PackedPages(viewGaussians({16, 16}, false).scene, resident.traits()), Error);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "colours of fewer SH bands than the scene's are as they are, those of more lose the higher ones") {
+TEST_CASE_FIXTURE(Gpu, "colours with fewer SH bands than the scene's stay, those with more lose them") {
     ViewedScene view = viewBuiltin("builtin:atelier", {96, 80}, 4000);
     REQUIRE(view.scene.sh_degree > 0);
     Scene flat = view.scene;
@@ -278,9 +273,7 @@ TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is 
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "where a part is exchanged, pictures that are made from their histories are right again "
-                  "within some frames") {
+TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures from histories are right within some frames") {
     const ViewedScene view = viewOrdered({160, 144});
     // What is in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
@@ -329,8 +322,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "of a scene that is seen in part, a frame looks at the pages that may be seen, and says how many") {
+TEST_CASE_FIXTURE(Gpu, "a frame looks at the pages that may be seen, and says how many") {
     ViewedScene view = viewBuiltin("builtin:atelier", {96, 96}, 100000);
     view.scene = inMortonOrder(view.scene);
     const std::uint32_t pages = pagesOf(view.scene.size());

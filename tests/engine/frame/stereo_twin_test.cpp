@@ -110,8 +110,7 @@ void checkEverySecond(const Context& context, std::size_t first) {
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "the device's stereo frames are the twin's, but for places that round to another pixel") {
+TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for places that are rounded") {
     checkEverySecond(context(), 0);
 }
 

@@ -62,9 +62,7 @@ BetweenWalls countBetween(Gpu& gpu, StereoFrame& frame, const Eye& eye, int side
     return between;
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a pixel at a wall's edge has the depth of that wall or of the one behind, in tiles that "
-                  "are rendered and reprojected") {
+TEST_CASE_FIXTURE(Gpu, "a pixel at a wall's edge has the depth of that wall or of the one behind") {
     const ViewedScene view = viewBuiltin("builtin:step-edge", {192, 192});
     const GpuScene scene(context(), view.scene);
     for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kTemporal}) {

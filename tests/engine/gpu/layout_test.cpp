@@ -172,9 +172,7 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
+TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for, under C++'s name") {
     KernelTable table = PassKernels(context()).table();
     append(table, presentKernels());
     CHECK(table.size() <= 198);  // each takes seconds in a driver's compiler, so the number may only fall
@@ -205,9 +203,7 @@ TEST_CASE_FIXTURE(Gpu, "every kernel has full subgroups where its width and the 
           context().fullSubgroups(lanes + 1));
 }
 
-TEST_CASE(
-    "no shader copies a struct of addresses, which some compilers do not survive, nor loads an address as if "
-    "it lay anywhere") {
+TEST_CASE("no shader copies a struct of addresses, nor loads an address as if it lay anywhere") {
     for (const auto& [name, pass] : listedPasses()) {
         CAPTURE(name);
         const CompiledShader shader(embeddedShader(name));

@@ -158,9 +158,7 @@ TEST_CASE_FIXTURE(Gpu, "warp_history and warp_pixels make the twin's picture, an
     checkWarped(*this, {evenFence(), true, false});
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "pixels are the same whether they are moved as addresses, as on software devices, or as what they are") {
+TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses or as what they are") {
     const auto walk = [](HistoryWalk& of) {
         for (int step = 0; step < 3; ++step) { of.go(step, 0.0); }
         return of.read(kRight).history.rgba;
@@ -187,17 +185,13 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "where there is no history both pictures are rendered in full, and what they leave for "
-                  "later is the twin's") {
+TEST_CASE_FIXTURE(Gpu, "without a history pictures are rendered in full and leave what the twin leaves") {
     checkFirst(*this, {atelier(), false, false});
     checkFirst(*this, {fence(), true, true});
     checkFirst(*this, {atelier(), false, true, 0.05});
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "pictures from histories and without are so in floats and half floats, whatever lenses hide" *
-             nightly()) {
+TEST_CASE_FIXTURE(Gpu, "pictures are so in floats and halves, whatever lenses hide" * nightly()) {
     for (const bool hides : {false, true}) {
         checkWarped(*this, {atelier(), false, hides});
         checkWarped(*this, {evenFence(), true, hides});
@@ -223,8 +217,7 @@ double widerSquares(const ViewedScene& view, const Eye& eye, const reference::Hi
     return reference::widerSquares(tile, full, picture(), index, eye.size_px);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
+TEST_CASE_FIXTURE(Gpu, "a frame's choice and what it measures of its tiles are the twin's") {
     const ViewedScene gaussians = viewGaussians({200, 150}, false), dimmed = viewGaussians({200, 150}, true);
     for (const ViewedScene* view : {&atelier(), &fence(), &gaussians, &dimmed}) {
         CAPTURE(view->name);
@@ -301,8 +294,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "every tile of a picture that moves has its turn, also where nothing is expected to go wrong") {
+TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, even where nothing looks wrong") {
     // Bars across the view, alternately near and far, in the background's colour: no block has a single
     // depth, and none looks wrong.
     std::vector<Splat> splats;
@@ -353,9 +345,7 @@ TEST_CASE("what lies in a box is seen in its rectangle, also where the box reach
     CHECK(through > 20);
 }
 
-TEST_CASE(
-    "a box before the eye has a rectangle of its own size and the low-pass, one beside it or behind it has "
-    "none") {
+TEST_CASE("a box before the eye has a rectangle of its size and the low-pass, others have none") {
     const Eye eye = makeEye({101, 101});
     const auto rectOf = [&](const glm::vec3& low, const glm::vec3& high) {
         const SceneChange box{low, high, 1.0f};

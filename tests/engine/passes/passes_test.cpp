@@ -264,9 +264,7 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
             gpu.readBack<std::uint32_t>(splats, visible.size())};
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "cull_pages finds the twin's pages, up to a hair, and leaves none out with a splat that cull keeps") {
+TEST_CASE_FIXTURE(Gpu, "cull_pages finds the twin's pages, and leaves none out of which cull keeps a splat") {
     checkPages(*this, 24);
 }
 TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * nightly()) { checkPages(*this, 100); }
@@ -332,9 +330,7 @@ TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "cull misses no splat that the twin sees, keeps hardly one more, and for two eyes what either sees") {
+TEST_CASE_FIXTURE(Gpu, "cull misses no splat that either eye sees, and keeps hardly one more") {
     for (const auto& [view, twin] : stagedScenes()) {
         CAPTURE(view.name);
         Eye other = view.eye;
@@ -361,8 +357,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "compact lists what is visible in the scene's order, with keys that order as depths or, "
-                  "anywhere, as distances") {
+                  "compact lists what is visible in order, with keys that order as depths or distances") {
     const auto check = [&](const ViewedScene& view, const reference::Settings& settings) {
         const auto visible = reference::cull(view.scene, {&view.eye, 1}, settings);
         const reference::Visible twin = reference::compact(view.scene, visible, view.eye, settings);

@@ -97,9 +97,7 @@ void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array
     CHECK(with.psnr_db >= without.psnr_db + 3.0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "splats beyond the dominant eye's border and behind its near plane are found without a "
-                  "hole to show them") {
+TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its near plane are found") {
     // A veil at 0.25 in front of eyes 0.064 apart has a disparity of 57 px: what one eye sees in columns 210
     // to 238, the other has beyond 256.
     for (const Side dominant : {kLeft, kRight}) {
@@ -133,9 +131,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(countOf(both.render(Mode::kPredicted).made.result, "splats_newcomers") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a near edge uncovers holes beside it; centre ROIs leave none, and every patch brings the "
-                  "picture nearer to the full render") {
+TEST_CASE_FIXTURE(Gpu, "a near edge uncovers holes beside it; centre ROIs leave none, and patches mend it") {
     // A screen at depth 1 ends at x = -0.05, in front of a wall at depth 4; for eyes 0.12 apart the
     // disparities are 26.6 px and 6.7 px.
     std::vector<Splat> splats;
@@ -180,9 +176,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
+TEST_CASE_FIXTURE(Gpu, "where moving did not pay it is left out, and nothing is lost, until it would pay") {
     const auto view = viewAtelier(kSizePx);
     const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.064);
     std::array<Eye, 2> outside = eyes;

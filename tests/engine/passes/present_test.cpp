@@ -92,9 +92,7 @@ std::size_t countOff(std::span<const std::uint32_t> actual, const Bytes& expecte
 
 std::vector<glm::dvec4> asDoubles(const Colours& colours) { return {colours.begin(), colours.end()}; }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "pictures of floats or half floats become the bytes of their twin, at every order of "
-                  "channels and encoding") {
+TEST_CASE_FIXTURE(Gpu, "pictures become the bytes of their twin, in every order of channels and encoding") {
     for (const glm::uvec2 size_px :
          {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(100, 70)}) {
         Shown shown{size_px, makeColours(size_px)};
@@ -140,9 +138,7 @@ TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that n
     CHECK(shown[2 * gpu::kTileSize] == 0xff000066);  // 0.4 of red
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "red comes first, or with blue first third; what is seen through has its light times its "
-                  "alpha; NaN is no colour") {
+TEST_CASE_FIXTURE(Gpu, "channels have their places, light is multiplied by alpha, and NaN is no colour") {
     const auto present = [&](const Colours& colours, const reference::Presentation& how) {
         Bytes pixels = runPresent(*this, {{colours.size(), 1}, colours}, how).pixels;
         CHECK(pixels == reference::present(asDoubles(colours), how));
@@ -169,9 +165,7 @@ TEST_CASE_FIXTURE(Gpu,
               {false, false, 0.2}) == Bytes{0xff000000u, 0xff0000ffu, 0xff00ff00u, 0xffff00ffu});
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "depth is near over depth, and nothing is infinitely far, whether it is a sum or in the "
-                  "words of a history") {
+TEST_CASE_FIXTURE(Gpu, "depth is near over depth, of sums and of words, and nothing is infinitely far") {
     // Alpha 0.5 at depth 4, alpha 1 at the near plane and in front of it, nothing, almost nothing, alpha
     // without depth.
     const Shown summed{
@@ -234,9 +228,7 @@ struct Silhouette {
     Shown shown{.size_px = kSizePx, .colours = {}};
 };
 
-TEST_CASE_FIXTURE(Gpu,
-                  "the depth at a silhouette is that of one of both surfaces, the one that makes up half of "
-                  "the pixel, and never between") {
+TEST_CASE_FIXTURE(Gpu, "the depth at a silhouette is of the surface that makes up half of the pixel") {
     for (const bool by_words : {false, true}) {
         for (const double soft_px : {0.0, 1.0, 2.5, 4.0, 8.0}) {
             CAPTURE(by_words);
@@ -262,9 +254,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a surface that is seen at a low angle, and what is thinner than a silhouette is soft, "
-                  "keep the depth that they have") {
+TEST_CASE_FIXTURE(Gpu, "surfaces seen at a low angle and thin things keep the depth that they have") {
     const glm::uvec2 size_px(40, 30);
     Shown shown{.size_px = size_px,
                 .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f))};
@@ -284,9 +274,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a picture lies over a program's own bytes, in any order, before or behind its depths, as "
-                  "its twin's does") {
+TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, before or behind its depths") {
     Shown shown{{64, 4}, makeColours({64, 4})};
     std::vector<double> sums, meshes;
     for (std::uint32_t i = 0; i < 256; ++i) {
@@ -330,9 +318,7 @@ TEST_CASE_FIXTURE(Gpu,
                       doctest::Contains("8-bit RGBA or BGRA"));
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "a window shows what a view with other axes sees of it, and the same bytes where these are its own") {
+TEST_CASE_FIXTURE(Gpu, "a window shows what a view with other axes sees, and the same bytes with the same") {
     const glm::uvec2 size_px(21, 13), view_px(10, 7);
     const Colours colours = makeColours(size_px);
     const Picture eye{.colours = upload("colours", colours), .depths = {}};

@@ -249,8 +249,7 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "under a mask project and bin make the same pairs but for the tiles outside, whatever the mask") {
+TEST_CASE_FIXTURE(Gpu, "under a mask project and bin make the same pairs but for the tiles outside") {
     std::mt19937 random(1);
     // More columns of tiles than a word of the mask has bits, a scene in which many splats have large boxes,
     // and boxes of all widths.

@@ -216,9 +216,7 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
                       device.read(device.tile_errors));
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "resample finds the twin's colours, depths, classes and errors in tiles that are moved, "
-                  "and leaves the others alone") {
+TEST_CASE_FIXTURE(Gpu, "resample makes what the twin makes of tiles that move, and leaves others alone") {
     const std::array ways{
         Way{0, Rows::kOwn, {.errors = true}},
         Way{2, Rows::kShared, {.errors = true, .depths = true, .classes = true}},
@@ -237,9 +235,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(all.error <= 0.002);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "resample makes odd rows the means of even ones where an eye does not tell them apart, as "
-                  "the twin does") {
+TEST_CASE_FIXTURE(Gpu, "resample makes odd rows means of even ones where an eye does not tell them apart") {
     Way way{
         2, Rows::kShared, {.errors = true, .depths = true, .classes = true}, /*apart=*/true, /*coarse=*/true};
     std::vector<Way> ways{way};
@@ -252,9 +248,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(all.depth <= 1e-5);  // where this pass moves rows, inverse depths are its own, with 18 bits
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "resample moves a row itself as reproject would, all rows at once or the odd ones later, to the bit") {
+TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, at once or odd rows later") {
     std::size_t pictures = 0;
     const Parts moved{.errors = true, .depths = true, .classes = true},
         copied{.depths = true, .classes = true, .forward = true, .hidden_tiles = true};
@@ -276,8 +270,7 @@ TEST_CASE_FIXTURE(
     CHECK(pictures == 50);
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
+TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of a gap's two ends") {
     // Everything moves by whole pixels: what is at inverse depth 0.1 by 1 px to the left, what is at 0.4 by 4
     // px. Colours are the squares of the columns.
     const glm::uvec2 size_px(16, 1);

@@ -190,9 +190,8 @@ std::uint64_t costOfErrors(const Tiles& tiles) {
     return cost;
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "price and select take the twin's tiles, however many there are, with budgets of none, one and all") {
+TEST_CASE_FIXTURE(Gpu,
+                  "price and select take the twin's tiles, however many, with budgets from none to all") {
     std::mt19937 random(7);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(31, 1), glm::uvec2(127, 1), glm::uvec2(32, 4),
                                   glm::uvec2(3, 43), glm::uvec2(33, 31), glm::uvec2(100, 50)}) {
@@ -207,9 +206,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "select takes the first of tiles of one price, to the last pair of the budget, and none "
-                  "without an error") {
+TEST_CASE_FIXTURE(Gpu, "select takes the first of equal tiles to the last pair, and none without an error") {
     std::mt19937 random(8);
     for (const glm::uvec2 size : {glm::uvec2(20, 1), glm::uvec2(30, 20)}) {
         for (const unsigned values : {1u, 5u}) {
@@ -239,9 +236,7 @@ TEST_CASE_FIXTURE(Gpu,
     checkChoice(*this, {none}, withCost(2000));
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "price tells prices apart from the least to the greatest, and takes sums that stopped "
-                  "growing for equal") {
+TEST_CASE_FIXTURE(Gpu, "price tells all prices apart, and takes sums that stopped growing for equal") {
     Tiles tiles({31, 8});
     for (std::size_t t = 0; t < tiles.count(); ++t) {
         const std::size_t bit = t % 31;
@@ -276,9 +271,7 @@ TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded 
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "select lists the tiles that others have marked, and all that are shown where nothing is worth moving") {
+TEST_CASE_FIXTURE(Gpu, "select lists the tiles that others marked, or all where nothing is worth moving") {
     std::mt19937 random(10);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(64, 4), glm::uvec2(65, 40)}) {
         for (const unsigned percent : {0u, 3u, 50u, 100u}) {
@@ -336,9 +329,7 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "of tiles with a history price and select take the twin's of both eyes, for any budget, bound and gaze") {
+TEST_CASE_FIXTURE(Gpu, "of tiles with a history, the twin's are taken for any budget, bound and gaze") {
     std::mt19937 random(11);
     for (const auto& [left, right] :
          {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
@@ -359,9 +350,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "of equal tiles with a history the first eye's are first, and a tile dearer than the "
-                  "budget has its turn") {
+TEST_CASE_FIXTURE(Gpu, "of equal tiles with a history the first are first, and a dear one has its turn") {
     gpu::HistoryTile plain{};
     plain.cost = 84;  // 100 including the cost of the tile itself
     plain.age = 1;

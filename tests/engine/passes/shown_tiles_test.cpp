@@ -69,8 +69,7 @@ void checkPicture(const Image& picture, const Image& whole, const Image& depth, 
     CHECK(other == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "eyes in full lose their hidden tiles and the pairs of these, and no byte of the others") {
+TEST_CASE_FIXTURE(Gpu, "eyes in full lose their hidden tiles and the pairs of these, and nothing else") {
     const ViewedScene view = viewAtelier(kSizePx);
     const auto eyes = headsetEyes(view.eye, glm::radians(4.0));
     KeptFrame frame(context(), view.scene);
@@ -159,8 +158,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "the device's choice for a gaze is the twin's, and so are rows that the eye does not tell apart") {
+TEST_CASE_FIXTURE(Gpu, "for a gaze, the choice of tiles is the twin's, and so are rows that become means") {
     auto view = viewAtelier({256, 192});
     const auto eyes = headsetEyes(view.eye, glm::radians(5.0));
     hideWhatMeetsTheNearPlane(view.scene, eyes);

@@ -77,9 +77,7 @@ std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
 }
 
 // Eyes side by side move pixels along rows, whatever their angles; canted ones do not.
-TEST_CASE_FIXTURE(
-    Gpu,
-    "reproject brings to each pixel what the twin brings there, and nothing from beside what a lens hides") {
+TEST_CASE_FIXTURE(Gpu, "reproject brings what the twin brings, and nothing from beside what a lens hides") {
     struct Way {
         int gap_px;
         bool forward;
@@ -194,10 +192,7 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "newcomers adds what a large splat near a canted eye brings to every tile it touches, up to "
-    "what a sum holds") {
+TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat brings to every tile, up to what a sum holds") {
     // Eyes that look past each other, and in front of one of them discs over nearly all of its 40x35 tiles.
     const glm::uvec2 size_px(640, 560);
     const auto eyeAt = [&](double x, double degrees) {
@@ -234,9 +229,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu,
-    "newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
+TEST_CASE_FIXTURE(Gpu,
+                  "newcomers compares with the middle of a tile, or with nothing if that does not move") {
     // Small discs of inverse depth 1/3 along the middle row. The first two share a tile, and the second
     // reaches beyond it.
     const glm::uvec2 size_px(64, 16);
@@ -262,8 +256,7 @@ TEST_CASE_FIXTURE(
     CHECK(found({nothing, nothing, nothing, nothing}, {0, 0, 0, 0}) == "5xxxx");
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
+TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds, however many add to it") {
     // A thousand discs in front of one tile, each of which alone adds more than remains.
     const std::vector<Splat> splats(
         1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});

@@ -73,9 +73,7 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     return components;
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "depth_bounds counts depths beyond its range as the last, and pixels of little weight or "
-                  "no depth not at all") {
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts what is out of range as the last, and faint pixels not at all") {
     StereoCase c = makePlainCase({20, 10});
     for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
         c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5;
@@ -144,8 +142,7 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "depth_bounds counts the twin's depths, and of these edge_rois finds the twin's borders and tiles") {
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and edge_rois finds its borders and tiles") {
     std::uint32_t all_flips = 0;
     for (StereoCase c : makeStereoCases()) {
         std::vector<gpu::uint> bins;
@@ -186,9 +183,7 @@ TEST_CASE_FIXTURE(
     CHECK(all_flips <= 4);  // measured: none
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over "
-                  "many workgroups of tiles") {
+TEST_CASE_FIXTURE(Gpu, "edge_rois marks what the dominant lens hides, and leaves hidden tiles as they are") {
     for (const glm::uvec2 size_tiles : {glm::uvec2(8, 6), glm::uvec2(43, 3), glm::uvec2(33, 31)}) {
         for (const Side dominant : {kLeft, kRight}) {
             StereoCase c = makePlainCase(16u * size_tiles - 3u, dominant);
@@ -248,8 +243,7 @@ TEST_CASE_FIXTURE(Gpu, "components groups holes as a flood fill does, whatever t
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
+TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles of each pixel") {
     std::mt19937 random(2);
     const glm::uvec2 size_px(128, 96);
     const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });

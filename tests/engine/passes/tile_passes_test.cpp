@@ -155,9 +155,7 @@ TEST_CASE_FIXTURE(Gpu, "tile_ranges looks through any number of pairs, and past 
     CHECK(rangesOnDevice(*this, {}, {32, 16}).ranges == std::vector(2, glm::uvec2(0)));
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "tile_ranges finds the pairs of every tile; under a mask it lists tiles with pairs, and "
-                  "clears those without") {
+TEST_CASE_FIXTURE(Gpu, "tile_ranges finds the pairs of every tile; under a mask it clears those without") {
     std::mt19937 random(3);
     for (const glm::uvec2 size_px : {glm::uvec2(300, 170), glm::uvec2(16, 16), glm::uvec2(1001, 7)}) {
         const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
@@ -228,8 +226,7 @@ TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "rasterize leaves the word that each pixel moves by, and none where its depth is not one") {
+TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, or none without a depth") {
     using reference::DepthChoice;
     std::size_t pixels = 0, other = 0, other_spread = 0;
     for (const StagedScene& staged : stagedScenes()) {
@@ -312,9 +309,7 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
     return found;
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "contribute finds what each splat makes up of a picture and which way it should go, the "
-                  "same on every run") {
+TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture and which way it should go") {
     for (const StagedScene& staged : stagedScenes()) {
         CAPTURE(staged.view.name);
         Raster raster(*this, staged);

@@ -89,8 +89,7 @@ StereoCase makeStill(glm::uvec2 size_px) {
     return computeEmpty({eye, eye});
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
+TEST_CASE_FIXTURE(Gpu, "weigh finds the twin's costs and kinds, for any eyes and whatever moving costs") {
     std::size_t other = 0;
     std::mt19937 random(5);
     for (StereoCase c : makeStereoCases()) {
@@ -140,8 +139,8 @@ TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over any number of tiles, from one 
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "weigh moves nothing where that saves no more than half of moving all tiles, and the budget") {
+TEST_CASE_FIXTURE(Gpu,
+                  "weigh moves nothing where that saves no more than half of moving all, and the budget") {
     // Eight tiles that cost 40 each to move: 160 must be saved; with seven that are shown, 140.
     struct Strip {
         std::vector<std::uint32_t> pairs;
@@ -177,8 +176,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "weigh says where moving would pay again, and holds costs to what a word has room for") {
+TEST_CASE_FIXTURE(Gpu, "weigh says where moving would pay again, and holds costs to what a word holds") {
     StereoCase c = makeStill({64, 16});
     c.settings.move_cost = 40;
     c.settings.budget = 0.0;

@@ -15,9 +15,7 @@ std::vector<glm::dvec4> samplesOf(const At& at) {
     return samples;
 }
 
-TEST_CASE(
-    "pixels that are samples stay as they are, and what is a parabola along either axis is filled as one, up "
-    "to the border") {
+TEST_CASE("samples stay as they are, and a parabola is filled as one, up to the border") {
     const auto parabola = [](const glm::dvec2& place) {
         return glm::dvec4(0.3 + 0.02 * place.x - 0.001 * place.x * place.x + 0.003 * place.y,
                           0.1 + 0.002 * place.y * place.y, place);

@@ -92,9 +92,7 @@ TEST_CASE("the kernel of repeated sampling loses under three quarters of what La
     CHECK(lost < 0.75 * lost_by_lagrange);
 }
 
-TEST_CASE(
-    "what stands still in front of a head that stands still stays as it is, however often, and has no "
-    "error") {
+TEST_CASE("what stands still before a head that stands still stays as it is, without an error") {
     const Eye eye = makeEye({70, 45});
     History history =
         makeHistory(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
@@ -169,9 +167,7 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
           doctest::Approx(64 * kLeastGrowth));
 }
 
-TEST_CASE(
-    "a tile's gradient is its picture's, in whole blocks and pixel by pixel, and where it is low less error "
-    "is within a bound") {
+TEST_CASE("a tile's gradient is its picture's, and where it is low a bound allows less error") {
     const Eye eye = makeEye({96, 64});
     const auto ramp = [](double x, double y) { return glm::dvec3(0.004 * x, 0.003 * y, 0.5); };
     const auto wall = [](double, double) { return 0.5; };

@@ -44,9 +44,7 @@ double depthAt(const Picture& picture, std::uint32_t x, std::uint32_t y) {
 
 doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-6); }
 
-TEST_CASE(
-    "no pixel at which a splat is met is left out by cull, by its box, by the runs of its rows or by bin, "
-    "and bin adds no tile") {
+TEST_CASE("no pixel at which a splat is met is left out by cull, box, runs or bin") {
     Scene scene = makeCloud(500, 6);
     for (std::size_t i = 0; i < 100; ++i) {  // large ones around the eye
         scene.positions[i] *= 0.3f;

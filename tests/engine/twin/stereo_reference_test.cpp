@@ -47,9 +47,7 @@ TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, 
     for (const double none : {0.0, -1.0, 1e-5, std::nan("")}) { CHECK(spreadCode(none) == 0); }
 }
 
-TEST_CASE(
-    "expected errors of blended depths: half the spread in pixels times the gradient, squared, on every "
-    "other row for two") {
+TEST_CASE("expected errors of blended depths: half the spread times the gradient, squared") {
     // 2 px of disparity at inverse depth 0.2, with a spread of 1/4 of it.
     const glm::uvec2 size_px(48, 16);
     Picture picture = makeRamp(size_px);
@@ -78,9 +76,7 @@ TEST_CASE(
           doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
 }
 
-TEST_CASE(
-    "expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of "
-    "it") {
+TEST_CASE("expected errors of steps in depth: the greater of both times the gradient") {
     // 10 px of disparity at inverse depth 1, so a step of 0.1 is one pixel.
     const glm::uvec2 size_px(48, 16);
     const Picture picture = makeRamp(size_px);
@@ -104,9 +100,7 @@ TEST_CASE(
     CHECK(errorsOf(stepped)[1] < 1e-24);
 }
 
-TEST_CASE(
-    "expected errors of sampling: what alternates from pixel to pixel is lost halfway between two, and not "
-    "on one") {
+TEST_CASE("expected errors of sampling: what alternates is lost halfway between two pixels") {
     const glm::uvec2 size_px(48, 16);
     const auto errorAt = [&](double inverse_depth, bool across) {
         Picture picture = makePicture(size_px, inverse_depth);
@@ -126,9 +120,7 @@ TEST_CASE(
     CHECK(errorAt(0.25, false) == 0.0);
 }
 
-TEST_CASE(
-    "an eye that resolves as much as the picture shows sees all of an error, farther from where it looks "
-    "less and less") {
+TEST_CASE("an eye sees all of an error where it looks, and less and less farther away") {
     // Pixels of 1/1000: cycles of 2/1000 rad, or 0.1146 degrees, which the eye resolves up to (0.1146 - 1/48)
     // / 0.022 = 4.26 degrees.
     const Eye eye{Pose{}, {1000.0, 1000.0, 8.0, 8.0}, {1024, 16}};
