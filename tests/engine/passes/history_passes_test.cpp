@@ -11,20 +11,11 @@ SUITE(history_passes) {
 
 using reference::TileKind;
 
-const ViewedScene& atelier() {
-    static const ViewedScene view = viewBuiltin("builtin:atelier", {150, 110}, 20000);
-    return view;
-}
-const ViewedScene& fence() {
-    static const ViewedScene view = viewBuiltin("builtin:fence", {150, 110});
-    return view;
-}
+constexpr glm::uvec2 kSizePx(150, 110);
 // Rows of a multiple of four pixels are written four at a time, and with half floats a block's whole row at
 // once.
-const ViewedScene& evenFence() {
-    static const ViewedScene view = viewBuiltin("builtin:fence", {160, 112});
-    return view;
-}
+constexpr glm::uvec2 kEvenPx(160, 112);
+ViewedScene viewFence(glm::uvec2 size_px = kSizePx) { return viewBuiltin("builtin:fence", size_px); }
 
 // A pixel's D is its alpha over its inverse depth, or 0 if that is infinitely far.
 std::size_t countOtherDepths(const Image& depths, const reference::History& history) {
@@ -57,7 +48,7 @@ std::vector<SceneChange> boxesAbout(const Eye& eye, int count, unsigned seed) {
 
 // A scene, and how its pictures are kept.
 struct Way {
-    const ViewedScene& view;
+    ViewedScene view;
     bool half_floats, hides;
     double cant = 0.0;
 
@@ -154,8 +145,8 @@ void checkFirst(Gpu& gpu, const Way& way) {
 }
 
 TEST_CASE_FIXTURE(Gpu, "warp_history and warp_pixels make the twin's picture, and expect the twin's errors") {
-    checkWarped(*this, {atelier(), false, true});
-    checkWarped(*this, {evenFence(), true, false});
+    checkWarped(*this, {viewAtelier(kSizePx), false, true});
+    checkWarped(*this, {viewFence(kEvenPx), true, false});
 }
 
 TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses or as what they are") {
@@ -164,7 +155,7 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses 
         return of.read(kRight).history.rgba;
     };
     for (const bool half_floats : {false, true}) {
-        const ViewedScene& view = half_floats ? evenFence() : atelier();
+        const ViewedScene view = half_floats ? viewFence(kEvenPx) : viewAtelier(kSizePx);
         HistoryWalk own(*this, view, {.half_floats = half_floats});
         const auto expected = walk(own);
         for (const auto& [name, last_constant] :
@@ -186,19 +177,19 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses 
 }
 
 TEST_CASE_FIXTURE(Gpu, "without a history pictures are rendered in full and leave what the twin leaves") {
-    checkFirst(*this, {atelier(), false, false});
-    checkFirst(*this, {fence(), true, true});
-    checkFirst(*this, {atelier(), false, true, 0.05});
+    checkFirst(*this, {viewAtelier(kSizePx), false, false});
+    checkFirst(*this, {viewFence(), true, true});
+    checkFirst(*this, {viewAtelier(kSizePx), false, true, 0.05});
 }
 
 TEST_CASE_FIXTURE(Gpu, "pictures are so in floats and halves, whatever lenses hide" * nightly()) {
     for (const bool hides : {false, true}) {
-        checkWarped(*this, {atelier(), false, hides});
-        checkWarped(*this, {evenFence(), true, hides});
-        checkFirst(*this, {atelier(), true, hides});
-        checkFirst(*this, {atelier(), false, hides});
-        checkFirst(*this, {atelier(), false, hides, 0.05});
-        checkFirst(*this, {fence(), true, hides});
+        checkWarped(*this, {viewAtelier(kSizePx), false, hides});
+        checkWarped(*this, {viewFence(kEvenPx), true, hides});
+        checkFirst(*this, {viewAtelier(kSizePx), true, hides});
+        checkFirst(*this, {viewAtelier(kSizePx), false, hides});
+        checkFirst(*this, {viewAtelier(kSizePx), false, hides, 0.05});
+        checkFirst(*this, {viewFence(), true, hides});
     }
 }
 
@@ -218,13 +209,13 @@ double widerSquares(const ViewedScene& view, const Eye& eye, const reference::Hi
 }
 
 TEST_CASE_FIXTURE(Gpu, "a frame's choice and what it measures of its tiles are the twin's") {
-    const ViewedScene gaussians = viewGaussians({200, 150}, false), dimmed = viewGaussians({200, 150}, true);
-    for (const ViewedScene* view : {&atelier(), &fence(), &gaussians, &dimmed}) {
-        CAPTURE(view->name);
+    for (const ViewedScene& view : {viewAtelier(kSizePx), viewFence(), viewGaussians({200, 150}, false),
+                                    viewGaussians({200, 150}, true)}) {
+        CAPTURE(view.name);
         // Two walks are equal so far; one of them renders tiles again in the last frame.
-        HistoryWalk walk(*this, *view), only_warps(*this, *view);
+        HistoryWalk walk(*this, view), only_warps(*this, view);
         constexpr int kFrames = 3;
-        HistoryWalk before(*this, *view);
+        HistoryWalk before(*this, view);
         for (int step = 0; step <= kFrames; ++step) { before.go(step, step == kFrames ? 0.5 : 0.0); }
         const std::vector<gpu::uint> chosen = before.read(kLeft).kinds;
         const auto measured = static_cast<std::uint32_t>(
@@ -272,7 +263,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice and what it measures of its tiles are t
             sums = {sums.expected + its.expected, sums.found + its.found};
             left += reference::leftSquares(warped[e].history.tiles, kinds[e]);
             if (kinds[e][measured] == TileKind::kPredicted) {
-                wider += widerSquares(*view, walk.eyes()[e], warped[e].history.tiles[measured], measured);
+                wider += widerSquares(view, walk.eyes()[e], warped[e].history.tiles[measured], measured);
             }
             for (std::size_t t = 0; t < kinds[e].size(); ++t) {
                 const reference::HistoryTile &a = made[e].history.tiles[t], &b = twin.tiles[t];

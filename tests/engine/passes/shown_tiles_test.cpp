@@ -163,7 +163,7 @@ TEST_CASE_FIXTURE(Gpu, "for a gaze, the choice of tiles is the twin's, and so ar
     const auto eyes = headsetEyes(view.eye, glm::radians(5.0));
     hideWhatMeetsTheNearPlane(view.scene, eyes);
     KeptFrame frame(context(), view.scene);
-    std::size_t chosen = 0, chosen_everywhere = 0, means = 0;
+    std::size_t chosen = 0, chosen_everywhere = 0;
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
         // A picture this small shows more than the eye resolves only far from the gaze.
@@ -179,21 +179,6 @@ TEST_CASE_FIXTURE(Gpu, "for a gaze, the choice of tiles is the twin's, and so ar
         const auto [made, depth, twin, same_kind] =
             makeWithTwin(frame, view.scene, eyes, twin_settings, settings);
         CHECK(std::ranges::count(same_kind, 0u) <= 1);
-        // Where the eye does not resolve single rows, rows are means of their neighbours, in both.
-        const auto valueAt = [&](std::size_t x, std::size_t y) {
-            return static_cast<double>(made.pictures[other].values[4 * (y * view.eye.size_px.x + x)]);
-        };
-        for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
-            const std::size_t x = 16 * (t % (view.eye.size_px.x / 16)),
-                              y = 16 * (t / (view.eye.size_px.x / 16));
-            double most = 0.0;
-            for (std::size_t i = 0; i < 16 * 7; ++i) {
-                const std::size_t column = x + i % 16, row = y + 1 + 2 * (i / 16);
-                most = std::max(most, std::abs(2.0 * valueAt(column, row) - valueAt(column, row - 1) -
-                                               valueAt(column, row + 1)));
-            }
-            means += made.tile_kinds[t] == 0 && most < 1e-6;
-        }
         chosen += countOf(made.result, "tiles_predicted");
         chosen_everywhere += countOf(everywhere.result, "tiles_predicted");
         // The dominant eye's gaze tells nothing about the affiliated eye's tiles.
@@ -202,7 +187,6 @@ TEST_CASE_FIXTURE(Gpu, "for a gaze, the choice of tiles is the twin's, and so ar
         CHECK(makeAffiliated(frame, eyes, settings).tile_kinds == everywhere.tile_kinds);
     }
     CHECK(chosen == between(0, chosen_everywhere));
-    CHECK(means > 30);  // measured: 51
 }
 
 TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for that other") {

@@ -152,21 +152,23 @@ TEST_CASE("opacity below 1/255 shows nothing, and opacity 1 blends as 0.99; nega
     CHECK(rgbaAt(render({{.colour = {-3.0f, 0.5f, 0.5f}}}), 50, 50).x == 0.0);
 }
 
+// Seen by an eye in front, two splats in the planes z = 2 + x and z = 2.1 - x, which meet at x = 0.05, z =
+// 2.05: red ones recede to the right, green ones to the left. `height` is across that.
+Scene makeCrossing(float height) {
+    return makeScene({{.rotation = kReceding, .scale = {1.0f, height}, .colour = {1.0f, 0.0f, 0.0f}},
+                      {.position = {0.0f, 0.0f, 2.1f},
+                       .rotation = glm::conjugate(kReceding),
+                       .scale = {1.0f, height},
+                       .colour = {0.0f, 1.0f, 0.0f}}});
+}
+
 TEST_CASE("two discs that cross are blended in the order of each pixel's own hits") {
-    // Planes z = 2 + x and z = 2.1 - x meet at x = 0.05, z = 2.05. Sorted as whole discs, the red one comes
-    // first everywhere, but to the right of the crossing the green one is nearer. On the ray x = X z they are
-    // at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre: a distance of sqrt(2) x along the disc.
-    const Splat red{.position = {0.0f, 0.0f, 2.0f},
-                    .rotation = kReceding,
-                    .scale = glm::vec2(1.0f),
-                    .colour = {1.0f, 0.0f, 0.0f}};
-    const Splat green{.position = {0.0f, 0.0f, 2.1f},
-                      .rotation = glm::conjugate(kReceding),
-                      .scale = glm::vec2(1.0f),
-                      .colour = {0.0f, 1.0f, 0.0f}};
+    // Sorted as whole discs, the red one comes first everywhere, but to the right of the crossing the green
+    // one is nearer. On the ray x = X z they are at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre:
+    // a distance of sqrt(2) x along the disc.
     const auto alphaAt = [](double x) { return static_cast<double>(0.8f) * std::exp(-x * x); };
     for (const std::size_t window : {std::size_t{1}, std::size_t{2}, SIZE_MAX}) {
-        const Picture picture = renderByPixel(makeScene({red, green}), window);
+        const Picture picture = renderByPixel(makeCrossing(1.0f), window);
         for (const std::uint32_t column : {10u, 51u, 54u, 90u}) {
             const double slope = (column - 50.0) / 100.0, red_z = 2.0 / (1.0 - slope),
                          green_z = static_cast<double>(2.1f) / (1.0 + slope);
@@ -180,16 +182,9 @@ TEST_CASE("two discs that cross are blended in the order of each pixel's own hit
 }
 
 TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
-    // Long along (1, 0, 1) and (1, 0, -1), through (0, 0, 2) and (0, 0, 2.1): needles in the planes of the
-    // discs above, which cross in the same way.
-    const auto alongX = [](float z, const glm::quat& rotation, const glm::vec3& colour) {
-        return Splat{
-            .position = {0.0f, 0.0f, z}, .rotation = rotation, .scale = {1.0f, 0.02f}, .colour = colour};
-    };
-    Scene scene = makeScene({alongX(2.0f, kReceding, {1.0f, 0.0f, 0.0f}),
-                             alongX(2.1f, glm::conjugate(kReceding), {0.0f, 1.0f, 0.0f})});
-    scene.thicknesses.assign(2, 0.02f);
-    const Picture by_splat = renderByPixel(scene, 1), by_pixel = renderByPixel(scene, SIZE_MAX);
+    Scene needles = makeCrossing(0.02f);
+    needles.thicknesses.assign(2, 0.02f);
+    const Picture by_splat = renderByPixel(needles, 1), by_pixel = renderByPixel(needles, SIZE_MAX);
     for (const std::uint32_t column : {40u, 50u, 65u}) {
         CAPTURE(column);
         CHECK(rgbaAt(by_splat, column, 50).x > rgbaAt(by_splat, column, 50).y);

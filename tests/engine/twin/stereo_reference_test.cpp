@@ -6,32 +6,37 @@ SUITE(stereo_reference) {
 
 using namespace binosplat::reference;
 
-EyePair eyesOf(glm::uvec2 size_px) {
-    const auto eyes = parallelEyes(size_px);
-    return {eyes[kLeft], eyes[kRight]};
-}
+constexpr glm::uvec2 kSizePx(48, 16);
 
-// Opaque and black, all at one inverse depth.
-Picture makePicture(glm::uvec2 size_px, double inverse_depth) {
-    const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
-    return {size_px, std::vector(pixels, glm::dvec4(0.0, 0.0, 0.0, 1.0)),
-            std::vector(pixels, 1.0 / inverse_depth), std::vector(pixels, inverse_depth),
-            std::vector(pixels, inverse_depth * inverse_depth)};
-}
-// A ramp in green, of 1/100 per pixel.
-Picture makeRamp(glm::uvec2 size_px) {
-    Picture picture = makePicture(size_px, 0.2);
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-        picture.rgba[i].y = 0.01 * static_cast<double>(i % size_px.x);
+// Opaque, in greens, all at one inverse depth whose spread has this code.
+template <typename Green>
+Picture makePicture(double inverse_depth, std::uint32_t code, const Green& green) {
+    Picture picture{kSizePx, {}, {}, {}, {}};
+    const double w = inverse_depth;
+    for (std::uint32_t i = 0; i < kSizePx.x * kSizePx.y; ++i) {
+        picture.rgba.emplace_back(0.0, green(i % kSizePx.x, i / kSizePx.x), 0.0, 1.0);
+        picture.depth.push_back(1.0 / w);
+        picture.inverse_depth.push_back(w);
+        picture.inverse_depth_squared.push_back(w * w * (1.0 + spreadOf(code) * spreadOf(code)));
     }
     return picture;
 }
-// Lets a pixel's depths differ by as much as `code` says.
-void spread(Picture& picture, std::size_t pixel, std::uint32_t code) {
-    const double w = picture.inverse_depth[pixel] / picture.rgba[pixel].w;
-    picture.inverse_depth_squared[pixel] =
-        picture.rgba[pixel].w * w * w * (1.0 + spreadOf(code) * spreadOf(code));
-}
+double ramp(std::uint32_t x, std::uint32_t) { return 0.01 * x; }
+
+// Such a picture, of three tiles, as the other eye gets it.
+struct Moved {
+    explicit Moved(Picture of, const StereoSettings& how = {}) : picture(std::move(of)), settings(how) {}
+    [[nodiscard]] std::vector<double> errors() const {
+        return expectErrors(resolved, arrivals, picture, kinds, eyes, settings);
+    }
+
+    Picture picture;
+    StereoSettings settings;
+    EyePair eyes{parallelEyes(kSizePx)[kLeft], parallelEyes(kSizePx)[kRight]};
+    std::vector<Arrival> arrivals = reproject(picture, eyes, settings);
+    std::vector<Resolved> resolved = resolve(arrivals, eyes, settings);
+    std::vector<TileKind> kinds = std::vector(3, TileKind::kNone);
+};
 
 TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, what is more the last") {
     for (std::uint32_t code = 1; code <= 31; ++code) {
@@ -48,69 +53,43 @@ TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, 
 }
 
 TEST_CASE("expected errors of blended depths: half the spread times the gradient, squared") {
-    // 2 px of disparity at inverse depth 0.2, with a spread of 1/4 of it.
-    const glm::uvec2 size_px(48, 16);
-    Picture picture = makeRamp(size_px);
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { spread(picture, i, spreadCode(0.25)); }
-    const EyePair eyes = eyesOf(size_px);
-    const StereoSettings settings{.hole_error = 0.0};
-    const auto arrivals = reproject(picture, eyes, settings);
-    const auto resolved = resolve(arrivals, eyes, settings);
-    std::vector<TileKind> kinds(3, TileKind::kNone);
-    const auto errors = expectErrors(resolved, arrivals, picture, kinds, eyes, settings);
+    // 2 px of disparity at inverse depth 0.2, with a spread of 1/4 of it; every other row counts for two.
+    Moved moved(makePicture(0.2, spreadCode(0.25), ramp), {.hole_error = 0.0});
     const double pixel = 0.25 * 0.25 * 0.01 * 0.01 / 3.0;
-    CHECK(errors[1] == doctest::Approx(256.0 * pixel));
+    CHECK(moved.errors()[1] == doctest::Approx(256.0 * pixel));
     // Two columns of holes on the right; beside them are the source's last two pixels, where the gradient
     // ends.
-    CHECK(errors[2] == doctest::Approx(16.0 * (13.0 + 0.25) * pixel + 32.0 * 1e-4));
+    CHECK(moved.errors()[2] == doctest::Approx(16.0 * (13.0 + 0.25) * pixel + 32.0 * 1e-4));
     // The spread is the one that arrived, whatever the source's is; and a mark excludes the tile.
-    auto spreadless = resolved;
-    for (Resolved& r : spreadless) { r.spread = 0; }
-    kinds[2] = TileKind::kCheap;
-    const auto without = expectErrors(spreadless, arrivals, picture, kinds, eyes, settings);
+    for (Resolved& r : moved.resolved) { r.spread = 0; }
+    moved.kinds[2] = TileKind::kCheap;
+    const auto without = moved.errors();
     CHECK(without[0] + without[1] < 1e-24);
     CHECK(without[2] == 0.0);
     // Four pixels are the maximum.
-    for (Resolved& r : spreadless) { r.spread = 31; }
-    CHECK(expectErrors(spreadless, arrivals, picture, kinds, eyes, settings)[1] ==
-          doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
+    for (Resolved& r : moved.resolved) { r.spread = 31; }
+    CHECK(moved.errors()[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
 }
 
-TEST_CASE("expected errors of steps in depth: the greater of both times the gradient") {
+TEST_CASE("expected errors of steps in depth: the greater of both times the gradient, on both sides") {
     // 10 px of disparity at inverse depth 1, so a step of 0.1 is one pixel.
-    const glm::uvec2 size_px(48, 16);
-    const Picture picture = makeRamp(size_px);
-    const EyePair eyes = eyesOf(size_px);
-    const auto arrivals = reproject(picture, eyes, {});
-    const auto resolved = resolve(arrivals, eyes, {});
-    const std::vector<TileKind> kinds(3, TileKind::kNone);
-    const auto errorsOf = [&](const std::vector<Arrival>& beside) {
-        return expectErrors(resolved, beside, picture, kinds, eyes, {});
-    };
-    CHECK(errorsOf(arrivals)[1] < 1e-24);
+    Moved moved(makePicture(0.2, 0, ramp));
+    CHECK(moved.errors()[1] < 1e-24);
     // One column of another depth next to each pair of columns: the class of a pixel itself stays.
-    auto stepped = arrivals;
-    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 24].inverse_depth = 0.3; }
-    CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * 2.0 * 0.01 * 0.01 / 3.0));
+    for (std::size_t y = 0; y < 16; ++y) { moved.arrivals[y * 48 + 24].inverse_depth = 0.3; }
+    CHECK(moved.errors()[1] == doctest::Approx(16.0 * 2.0 * 0.01 * 0.01 / 3.0));
     // The larger step decides, on whichever side it is.
-    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22].inverse_depth = 0.0; }
-    CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * (1.0 + 4.0 + 4.0) * 0.01 * 0.01 / 3.0));
+    for (std::size_t y = 0; y < 16; ++y) { moved.arrivals[y * 48 + 22].inverse_depth = 0.0; }
+    CHECK(moved.errors()[1] == doctest::Approx(16.0 * (1.0 + 4.0 + 4.0) * 0.01 * 0.01 / 3.0));
     // Where nothing arrived, there is no step.
-    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22] = stepped[y * 48 + 24] = {}; }
-    CHECK(errorsOf(stepped)[1] < 1e-24);
+    for (std::size_t y = 0; y < 16; ++y) { moved.arrivals[y * 48 + 22] = moved.arrivals[y * 48 + 24] = {}; }
+    CHECK(moved.errors()[1] < 1e-24);
 }
 
 TEST_CASE("expected errors of sampling: what alternates is lost halfway between two pixels") {
-    const glm::uvec2 size_px(48, 16);
-    const auto errorAt = [&](double inverse_depth, bool across) {
-        Picture picture = makePicture(size_px, inverse_depth);
-        for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-            picture.rgba[i].y = (across ? i : i / 48) % 2 == 0 ? 0.55 : 0.45;
-        }
-        const EyePair eyes = eyesOf(size_px);
-        const auto arrivals = reproject(picture, eyes, {});
-        return expectErrors(resolve(arrivals, eyes, {}), arrivals, picture,
-                            std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
+    const auto errorAt = [](double inverse_depth, bool across) {
+        const auto stripes = [&](auto x, auto y) { return (across ? x : y) % 2 == 0 ? 0.55 : 0.45; };
+        return Moved(makePicture(inverse_depth, 0, stripes)).errors()[1];
     };
     // 10 px of disparity at inverse depth 1.
     CHECK(errorAt(0.25, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0));
