@@ -52,9 +52,7 @@ public:
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             eyes[e].size_px = sizes_[reprojects(settings_.mode) || !settings_.keep_history ? 0 : e];
             eyes[e].intrinsics = intrinsicsFromAngles(angles_[e], eyes[e].size_px);
-            eyes[e].world_from_camera.orientation =
-                eyes[e].world_from_camera.orientation *
-                glm::angleAxis(e == 0 ? -cant_ : cant_, glm::dvec3(0, 1, 0));
+            eyes[e] = turned(eyes[e], e == 0 ? -cant_ : cant_);
         }
         return eyes;
     }
@@ -67,9 +65,8 @@ public:
                                 !(settings.keep_history && hasHistory(settings.mode));
         const std::vector<Eye> all = eyes();
         for (std::size_t e = 0; e < all.size() && hides_; ++e) {
-            const glm::uvec2 tiles = (all[e].size_px + 15u) / 16u;
-            hidden_[e].assign(std::size_t{tiles.x} * tiles.y, 0);
-            for (std::size_t t = 0; t < tiles.x; ++t) { hidden_[e][t] = 1; }  // the top row
+            hidden_[e].assign(tileCount(all[e].size_px), 0);
+            std::fill_n(hidden_[e].begin(), tilesOf(all[e].size_px).x, 1);  // the top row
             settings.hidden_tiles[e] = hidden_[e];
         }
         return settings;

@@ -160,15 +160,8 @@ private:
         }
     }
 
-    static std::string textOf(Words words) {
-        std::string text;
-        for (std::size_t i = 0; i < 4 * words.size(); ++i) {
-            const char c = static_cast<char>(words[i / 4] >> (8 * (i % 4)));
-            if (c == '\0') { break; }
-            text += c;
-        }
-        return text;
-    }
+    // Ends with a zero.
+    static std::string textOf(Words words) { return reinterpret_cast<const char*>(words.data()); }
 
     // For an instruction in a function: its type, if it has a result, and the ids among its operands; some
     // operands are plain numbers.
@@ -192,8 +185,7 @@ private:
     }
 
     [[nodiscard]] std::string nameOf(std::uint32_t id) const {
-        const auto found = names_.find(id);
-        return found != names_.end() ? found->second : "";
+        return names_.contains(id) ? names_.at(id) : "";
     }
 
     [[nodiscard]] bool holdsAddress(std::uint32_t type) const {

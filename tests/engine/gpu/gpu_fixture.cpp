@@ -2,15 +2,6 @@
 #include "tests/engine/gpu/gpu_fixture.h"
 
 namespace binosplat::test {
-namespace {
-
-gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
-    const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
-    const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
-    return {rows == 0 ? 0 : (groups + rows - 1) / rows, rows, 1};
-}
-
-}  // namespace
 
 const Context& Gpu::shared() {
     static const Context context({.device = {}, .validation = kValidation, .max_allocation_bytes = 0});
@@ -55,17 +46,16 @@ void Gpu::read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t o
 }
 
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
-    constexpr std::uint64_t kMostAtOnce = std::uint64_t{gpu::kSortBlock} * gpu::kMaxSortBlocks;
     const std::uint32_t count = needed <= capacity ? needed : 0;
+    const auto over = [&](std::uint64_t group_items) {
+        const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
+        const vk::Extent2D rows = Commands::rowsOf(groups);
+        return gpu::DispatchSize{rows.width, rows.height, 1};
+    };
+    constexpr std::uint64_t kMostAtOnce = std::uint64_t{gpu::kSortBlock} * gpu::kMaxSortBlocks;
+    const std::uint64_t rounds = std::max<std::uint64_t>(1, (count + kMostAtOnce - 1) / kMostAtOnce);
     return {
-        needed,
-        count,
-        0,
-        {},
-        dispatchOver(count, gpu::kGroupSize),
-        dispatchOver(count, gpu::kListBlock),
-        dispatchOver(count, gpu::kSortBlock * std::max(1u, static_cast<std::uint32_t>(
-                                                               (count + kMostAtOnce - 1) / kMostAtOnce)))};
+        needed, count, 0, {}, over(gpu::kGroupSize), over(gpu::kListBlock), over(gpu::kSortBlock * rounds)};
 }
 
 }  // namespace binosplat::test

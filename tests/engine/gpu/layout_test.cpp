@@ -113,17 +113,12 @@ std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) 
         (shader.fields.size() == 1 && shader.fields[0].name == "at")) {
         return {};
     }
-    const auto twin = std::find_if(host.begin(), host.end(),
-                                   [&](const Layout& layout) { return layout.name == shader.name; });
+    const auto twin = std::ranges::find(host, shader.name, &Layout::name);
     if (twin == host.end()) { return shader.name + " is missing in the table of this test"; }
     if (shader.bytes != 0 && shader.bytes != twin->bytes) { return shader.name + " has another size"; }
     if (shader.fields.size() != twin->fields.size()) { return shader.name + " has another number of fields"; }
-    for (std::size_t i = 0; i < shader.fields.size(); ++i) {
-        if (shader.fields[i] != twin->fields[i]) {
-            return shader.name + "." + shader.fields[i].name + " differs";
-        }
-    }
-    return {};
+    const auto other = std::ranges::mismatch(shader.fields, twin->fields).in1;
+    return other != shader.fields.end() ? shader.name + "." + other->name + " differs" : "";
 }
 
 // What shaders/passes.def says about each pass.
