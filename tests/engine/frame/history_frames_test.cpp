@@ -1,6 +1,6 @@
 // Facts about frames that are reprojected from the history, in full and with coarse tiles: what they equal if
 // nothing moves, and what they cost. For single passes see history_passes_test.cpp.
-#include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/passes/history_stages.h"
 
 SUITE(history_frames) {
 
@@ -20,45 +20,16 @@ FrameSettings withCoarse(Mode mode) {
     return settings;
 }
 
-// Frames one after another, each with its full renders beside it.
-class Walk {
-public:
-    Walk(const Context& context, const FrameSettings& settings, ViewedScene view = viewAtelier(kSizePx))
-        : view_(std::move(view)),
-          frame_(context, view_.scene),
-          full_(StereoFrame::beside(frame_)),
-          settings_(settings) {}
-
-    FrameResult go(double step) { return go(step, view_.eye); }
-    FrameResult go(double step, const Eye& start) {
-        eyes_ = walkedEyes(start, step);
-        return frame_.render(eyes_, settings_);
+// Each eye by itself, without a history.
+std::array<Image, 2> seenAlone(HistoryWalk& walk) {
+    const auto frame = StereoFrame::beside(walk.frame());
+    std::array<Image, 2> pictures;
+    for (std::size_t e = 0; e < 2; ++e) {
+        frame->render({&walk.eyes()[e], 1}, withCoarse(Mode::kMono));
+        pictures[e] = frame->readPicture(0);
     }
-    std::array<Image, 2> shown() { return picturesOf(frame_); }
-    std::array<Image, 2> full() {
-        full_->render(eyes_, makeSettings(Mode::kShared));
-        return picturesOf(*full_);
-    }
-    // Each eye by itself, without a history.
-    std::array<Image, 2> alone() {
-        std::array<Image, 2> pictures;
-        for (std::size_t e = 0; e < 2; ++e) {
-            full_->render({&eyes_[e], 1}, withCoarse(Mode::kMono));
-            pictures[e] = full_->readPicture(0);
-        }
-        return pictures;
-    }
-    double psnr() { return psnrDb(shown(), full()); }
-    StereoFrame& frame() { return frame_; }
-    [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
-
-private:
-    ViewedScene view_;
-    KeptFrame frame_;
-    std::unique_ptr<StereoFrame> full_;
-    FrameSettings settings_;
-    std::array<Eye, 2> eyes_;
-};
+    return pictures;
+}
 
 TEST_CASE_FIXTURE(Gpu, "where no history is kept, temporal is predicted and alternate is shared") {
     const ViewedScene view = viewAtelier(kSizePx);
@@ -78,7 +49,7 @@ TEST_CASE_FIXTURE(Gpu, "where no history is kept, temporal is predicted and alte
 
 TEST_CASE_FIXTURE(Gpu,
                   "a head that stands still sees the full render within 30 frames, and then for no work") {
-    Walk walk(context(), makeSettings(Mode::kTemporal));
+    HistoryWalk walk(*this, viewAtelier(kSizePx), makeSettings(Mode::kTemporal));
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
     const auto full = walk.full();
@@ -120,8 +91,8 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, without a fr
                                                        Way{Mode::kTemporal, true, between(0.1, 0.23), 34.0},
                                                        Way{Mode::kAlternate, true, within(0.0, 1.0), 34.0}}) {
         INFO("mode ", nameOf(mode), ", coarse ", coarse);
-        Walk walk(context(), coarse ? withCoarse(mode) : makeSettings(mode),
-                  coarse ? viewWide(kSizePx) : viewAtelier(kSizePx));
+        HistoryWalk walk(*this, coarse ? viewWide(kSizePx) : viewAtelier(kSizePx),
+                         coarse ? withCoarse(mode) : makeSettings(mode));
         walk.go(0.0);
         // There was no history yet.
         if (!coarse) { CHECK(walk.shown()[0].values == walk.full()[0].values); }
@@ -140,7 +111,7 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, without a fr
 TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spent there") {
     // The error in the left third of both pictures, over some frames.
     const auto errorOf = [&](const FrameSettings& settings) {
-        Walk walk(context(), settings);
+        HistoryWalk walk(*this, viewAtelier(kSizePx), settings);
         double error = 0.0;
         for (int frame = 0; frame <= 12; ++frame) {
             const FrameResult result = walk.go(frame);
@@ -165,18 +136,18 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spe
 TEST_CASE_FIXTURE(Gpu,
                   "a history comes from less than the way to the other eye; else frames are waited for") {
     constexpr double kStepMetres = 0.0033166;  // the step of walkedEyes
-    const auto countFull = [](Walk& walk) {
+    const auto countFull = [](HistoryWalk& walk) {
         const auto shown = walk.shown(), full = walk.full();
         return (shown[0].values == full[0].values ? 1 : 0) + (shown[1].values == full[1].values ? 1 : 0);
     };
     for (const auto& [metres, full] : {std::pair(0.04, 0), std::pair(0.06, 2)}) {
-        Walk walk(context(), makeSettings(Mode::kTemporal));
+        HistoryWalk walk(*this, viewAtelier(kSizePx), makeSettings(Mode::kTemporal));
         walk.go(0.0);
         walk.go(metres / kStepMetres);
         CHECK(countFull(walk) == full);
     }
     // One eye is always rendered, so only the other's history counts, which is one frame old.
-    Walk alternate(context(), makeSettings(Mode::kAlternate));
+    HistoryWalk alternate(*this, viewAtelier(kSizePx), makeSettings(Mode::kAlternate));
     for (int frame = 0; frame < 4; ++frame) { alternate.go(frame * 0.04 / kStepMetres); }
     CHECK(countFull(alternate) == 1);
 
@@ -195,7 +166,7 @@ TEST_CASE_FIXTURE(Gpu,
 
 // The resolution changes as it does when a governor looks for the one that holds the rate.
 TEST_CASE_FIXTURE(Gpu, "a history of another size or other angles is a history like any other") {
-    Walk walk(context(), withBudget(Mode::kTemporal, 0.4));
+    HistoryWalk walk(*this, viewAtelier(kSizePx), withBudget(Mode::kTemporal, 0.4));
     for (int step = 0; step < 8; ++step) {
         Eye eye = viewAtelier(kSizePx).eye;
         const double scale = step % 3 == 0   ? 1.0
@@ -214,7 +185,7 @@ TEST_CASE_FIXTURE(Gpu, "a history of another size or other angles is a history l
 
 TEST_CASE_FIXTURE(Gpu,
                   "alternate renders one eye in full, in turn, and the other from its last such picture") {
-    Walk walk(context(), makeSettings(Mode::kAlternate));
+    HistoryWalk walk(*this, viewAtelier(kSizePx), makeSettings(Mode::kAlternate));
     walk.go(0.0);
     std::array<int, 2> turns{};
     for (int frame = 1; frame <= 6; ++frame) {
@@ -233,10 +204,10 @@ TEST_CASE_FIXTURE(Gpu,
 TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a history") {
     for (const Mode mode : {Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
-        Walk walk(context(), withCoarse(mode), viewWide(kSizePx));
+        HistoryWalk walk(*this, viewWide(kSizePx), withCoarse(mode));
         const FrameResult result = walk.go(0.0);
         CHECK(countOf(result, "tiles_coarse") > 50);
-        const auto shown = walk.shown(), alone = walk.alone();
+        const auto shown = walk.shown(), alone = seenAlone(walk);
         CHECK(shown[kLeft].values == alone[kLeft].values);
         // in the left eye's order, which may differ by rounding
         CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);
@@ -248,11 +219,11 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a hist
 }
 
 TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still sees what it sees without a history") {
-    Walk walk(context(), withCoarse(Mode::kTemporal), viewWide(kSizePx));
+    HistoryWalk walk(*this, viewWide(kSizePx), withCoarse(Mode::kTemporal));
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
     CHECK(walk.go(4.0).work_rendered < 0.005);  // errors that nobody notices get their turn now and then
-    CHECK(psnrDb(walk.shown(), walk.alone()) > 50.0);
+    CHECK(psnrDb(walk.shown(), seenAlone(walk)) > 50.0);
 }
 
 }  // SUITE(history_frames)

@@ -37,7 +37,9 @@ std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     std::vector<Scene> some;
     for (std::size_t p = 0; p < parts; ++p) {
         const std::size_t first = p * scene.size() / parts, end = (p + 1) * scene.size() / parts;
-        some.push_back(splatsOf(scene, first, end - first));
+        std::vector<std::uint32_t> splats(end - first);
+        std::iota(splats.begin(), splats.end(), static_cast<std::uint32_t>(first));
+        some.push_back(pickSplats(scene, splats));
     }
     return some;
 }
@@ -105,15 +107,12 @@ TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, and hundreds of
         if (step == 10) { bytes = resident.scene().bytes(); }
         if (step % 10 != 9) { continue; }
         const auto pictures = picturesOf(frame);
-        std::vector<std::uint32_t> splats;
+        Scene scene = pickSplats(view.scene, {});
         for (std::size_t p = 0; p < kParts; ++p) {
-            for (std::size_t i = p * view.scene.size() / kParts;
-                 there[p] && i < (p + 1) * view.scene.size() / kParts; ++i) {
-                splats.push_back(static_cast<std::uint32_t>(i));
-            }
+            if (there[p]) { appendSplats(scene, parts[p]); }
         }
-        CHECK(resident.splatsShown() == splats.size());
-        const GpuScene whole(context(), splatsOf(view.scene, splats));
+        CHECK(resident.splatsShown() == scene.size());
+        const GpuScene whole(context(), scene);
         const auto other = StereoFrame::beside(frame);
         other->show(whole);
         other->render(eyes, makeSettings(Mode::kShared));

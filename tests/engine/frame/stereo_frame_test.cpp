@@ -126,8 +126,8 @@ TEST_CASE_FIXTURE(Gpu, "where no splat is seen there is the background, without 
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
         const auto pair = renderPair(
             context(), empty, stereoPair(eyeOf(*builtinView("fence"), {40, 24}), 0.063), makeSettings(mode));
-        CHECK(std::all_of(pair.pictures[kRight].values.begin(), pair.pictures[kRight].values.end(),
-                          [](float value) { return value == 0.0f; }));
+        const auto [least, most] = std::ranges::minmax(pair.pictures[kRight].values);
+        CHECK(these(least, most) == these(0.0f, 0.0f));
     }
 }
 

@@ -18,13 +18,18 @@ struct Layout {
     std::vector<Field> fields;
 };
 
+// Calls `use` with each instruction: (length << 16 | opcode), and operands. Before these are five words.
+template <typename Word, typename Use>
+void forEachInstruction(std::span<Word> words, const Use& use) {
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+        use(words.subspan(at, words[at] >> 16));
+    }
+}
+
 class CompiledShader {
 public:
     explicit CompiledShader(std::span<const std::uint32_t> words) {
-        // Five words of header, then instructions of (length << 16 | opcode) and operands.
-        for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
-            read(words[at] & 0xffff, words.subspan(at + 1, (words[at] >> 16) - 1));
-        }
+        forEachInstruction(words, [&](Words whole) { read(whole[0] & 0xffff, whole.subspan(1)); });
         // A value computed only from constants counts as read if something computed from it is read; each is
         // computed from earlier ones.
         for (auto made = made_of_.rbegin(); made != made_of_.rend(); ++made) {

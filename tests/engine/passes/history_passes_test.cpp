@@ -4,6 +4,7 @@
 // float32 may fall on the other side: there is a budget for such flips.
 #include "engine/frame/changes.h"
 #include "shaders/embedded_shaders.h"
+#include "tests/engine/gpu/compiled_shader.h"
 #include "tests/engine/passes/history_stages.h"
 #include "tests/engine/passes/pass_stages.h"
 
@@ -123,7 +124,7 @@ void checkWarped(Gpu& gpu, Way way) {
             one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
             blocks += warped.one_by_one.size();
             all.compare(made, std::move(warped.picture));
-            if (e == 0) { CHECK(countOtherDepths(walk.readDepth(), made.history) == 0); }
+            if (e == 0) { CHECK(countOtherDepths(walk.frame().readDominantDepth(), made.history) == 0); }
             before[e] = std::move(made);
         }
     }
@@ -202,11 +203,11 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses 
             const auto embedded = embeddedShader(name);
             std::vector<std::uint32_t>& words = context().replacedShaders()[name];
             words.assign(embedded.begin(), embedded.end());
-            for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
-                const bool is_it = (words[at] & 0xffff) == kDecorate && words[at + 2] == kSpecId &&
-                                   words[at + 3] == last_constant;
-                if (is_it) { words[at + 3] = 99; }  // an id that nobody sets, so by_address keeps its default
-            }
+            forEachInstruction(std::span(words), [last = last_constant](std::span<std::uint32_t> whole) {
+                if ((whole[0] & 0xffff) == kDecorate && whole[2] == kSpecId && whole[3] == last) {
+                    whole[3] = 99;  // an id that nobody sets, so by_address keeps its default
+                }
+            });
         }
         HistoryWalk other(*this, view, walkSettings(half_floats));
         CHECK(walk(other) == expected);

@@ -68,40 +68,50 @@ inline FrameSettings walkSettings(bool half_floats = false, const glm::dvec3& ba
     return settings;
 }
 
-// Frames of a head that walks and turns a little, made as `temporal` makes them. `cant`: of the right eye.
+// Frames of a head that walks and turns a little, with their full renders beside them. `cant`: of the right
+// eye.
 class HistoryWalk {
 public:
-    HistoryWalk(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings = walkSettings(),
-                double cant = 0.0)
-        : gpu_(gpu), view_(view), settings_(settings), cant_(cant), frame_(gpu.context(), view.scene) {}
+    HistoryWalk(Gpu& gpu, ViewedScene view, const FrameSettings& settings = walkSettings(), double cant = 0.0)
+        : gpu_(gpu),
+          view_(std::move(view)),
+          settings_(settings),
+          cant_(cant),
+          frame_(gpu.context(), view_.scene),
+          full_(StereoFrame::beside(frame_)) {}
 
-    FrameResult go(double step, double budget, std::uint32_t measured_part = gpu::kMeasuredParts) {
-        eyes_ = walkedEyes(view_.eye, step);
+    FrameResult go(double step) { return go(step, view_.eye); }
+    FrameResult go(double step, const Eye& start) {
+        eyes_ = walkedEyes(start, step);
         eyes_[kRight] = turned(eyes_[kRight], cant_);
-        settings_.stereo.budget = budget;
-        settings_.measured_part = measured_part;
         return frame_.render(eyes_, settings_);
     }
+    FrameResult go(double step, double budget, std::uint32_t measured_part = gpu::kMeasuredParts) {
+        settings_.stereo.budget = budget;
+        settings_.measured_part = measured_part;
+        return go(step);
+    }
+    std::array<Image, 2> shown() { return picturesOf(frame_); }
     // Full renders of the last frame's eyes.
     std::array<Image, 2> full() {
         FrameSettings settings = settings_;
         settings.mode = Mode::kShared;
-        settings.keep_history = false;
-        const auto frame = StereoFrame::beside(frame_);
-        frame->render(eyes_, settings);
-        return picturesOf(*frame);
+        settings.keep_history = settings.half_periphery = false;
+        full_->render(eyes_, settings);
+        return picturesOf(*full_);
     }
+    double psnr() { return psnrDb(shown(), full()); }
     EyeOnDevice read(std::size_t eye) { return readEye(gpu_, frame_, static_cast<int>(eye), eyes_[eye]); }
-    // The left eye's.
-    Image readDepth() { return frame_.readDominantDepth(); }
+    [[nodiscard]] StereoFrame& frame() { return frame_; }
     [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
 
 private:
     Gpu& gpu_;
-    const ViewedScene& view_;
+    ViewedScene view_;
     FrameSettings settings_;
     double cant_;
     KeptFrame frame_;
+    std::unique_ptr<StereoFrame> full_;
     std::array<Eye, 2> eyes_;
 };
 

@@ -46,14 +46,16 @@ inline const std::vector<StagedScene>& stagedScenes() {
     return scenes;
 }
 
+inline Buffer uploadEyes(Gpu& gpu, const std::vector<Eye>& eyes, double near) {
+    std::vector<gpu::EyeView> views;
+    for (const Eye& eye : eyes) { views.push_back(viewOf(eye, near)); }
+    return gpu.upload("eyes", views);
+}
+
 // A scene and its eyes on the device.
 struct SceneOnDevice {
     SceneOnDevice(Gpu& gpu, const Scene& host_scene, const std::vector<Eye>& host_eyes, double near)
-        : scene(gpu.context(), host_scene), eyes(gpu.upload("eyes", [&] {
-              std::vector<gpu::EyeView> views;
-              for (const Eye& eye : host_eyes) { views.push_back(viewOf(eye, near)); }
-              return views;
-          }())) {}
+        : scene(gpu.context(), host_scene), eyes(uploadEyes(gpu, host_eyes, near)) {}
 
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyeViews() const { return eyes.address<gpu::EyeView>(); }
 

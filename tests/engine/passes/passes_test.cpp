@@ -2,6 +2,7 @@
 // twin's previous pass.
 #include "engine/passes/passes.h"
 #include "shaders/embedded_shaders.h"
+#include "tests/engine/gpu/compiled_shader.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/scene_pages.h"
 
@@ -50,10 +51,8 @@ public:
         : gpu_(gpu),
           kernel_(kernel != nullptr ? *kernel : gpu.kernel(CullPagesKernel{.splat_kind = shape})),
           count_(static_cast<gpu::uint>(pages.size())) {
-        std::vector<gpu::EyeView> views;
-        for (const Eye& eye : eyes) { views.push_back(viewOf(eye, kSettings.near)); }
         table_ = gpu.upload("pages", pages);
-        eyes_ = gpu.upload("eyes", views);
+        eyes_ = uploadEyes(gpu, eyes, kSettings.near);
         bits_ = gpu.allocate<gpu::uint>("bits", (pages.size() + 31) / 32);
         offsets_ = gpu.allocate<gpu::uint>("offsets", (pages.size() + 31) / 32);
         list_ = gpu.allocate<gpu::uint>("list", pages.size() + gpu::kSumRuns);
@@ -109,10 +108,10 @@ Kernel withoutNan(Gpu& gpu, const K& variant) {
     const auto embedded = embeddedShader(K::kShader);
     std::vector<std::uint32_t>& words = gpu.context().replacedShaders()[K::kShader];
     words.assign(embedded.begin(), embedded.end());
-    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
-        const std::uint32_t opcode = words[at] & 0xffff;
-        if (opcode >= kOrderedEqual && opcode <= kUnorderedGreaterThanEqual) { words[at] |= 1; }
-    }
+    forEachInstruction(std::span(words), [](std::span<std::uint32_t> whole) {
+        const std::uint32_t opcode = whole[0] & 0xffff;
+        if (opcode >= kOrderedEqual && opcode <= kUnorderedGreaterThanEqual) { whole[0] |= 1; }
+    });
     Kernel kernel(gpu.context(), variantOf(variant));
     gpu.context().replacedShaders().erase(K::kShader);
     return kernel;

@@ -1,58 +1,16 @@
 // Scenes whose chunks come and go, for tests: neighbouring splats are loaded together.
 #pragma once
 
+#include "engine/files/sog_pack.h"
+#include "engine/scene/pick_splats.h"
 #include "engine/stream/resident_scene.h"
 #include "tests/engine/frame/gpu_scenes.h"
 
 namespace binosplat::test {
 
-// These splats of a scene, in this order.
-inline Scene splatsOf(const Scene& scene, std::span<const std::uint32_t> splats) {
-    Scene some = scene;
-    some.positions.clear();
-    some.rotations.clear();
-    some.scales.clear();
-    some.thicknesses.clear();
-    some.opacities.clear();
-    some.sh.clear();
-    const auto numbers = static_cast<std::ptrdiff_t>(3 * shCoefficientCount(scene.sh_degree));
-    for (const std::uint32_t splat : splats) {
-        some.positions.push_back(scene.positions[splat]);
-        some.rotations.push_back(scene.rotations[splat]);
-        some.scales.push_back(scene.scales[splat]);
-        if (scene.isGaussian3d()) { some.thicknesses.push_back(scene.thicknesses[splat]); }
-        some.opacities.push_back(scene.opacities[splat]);
-        some.sh.insert(some.sh.end(), scene.sh.begin() + splat * numbers,
-                       scene.sh.begin() + (splat + 1) * numbers);
-    }
-    return some;
-}
-
-inline Scene splatsOf(const Scene& scene, std::size_t first, std::size_t count) {
-    std::vector<std::uint32_t> splats(count);
-    std::iota(splats.begin(), splats.end(), static_cast<std::uint32_t>(first));
-    return splatsOf(scene, splats);
-}
-
-// All of it along Morton's curve through its bounds, with ten bits per axis.
+// All of it along a Morton curve.
 inline Scene inMortonOrder(const Scene& scene) {
-    glm::vec3 low(scene.positions.at(0)), high = low;
-    for (const glm::vec3& position : scene.positions) {
-        low = glm::min(low, position);
-        high = glm::max(high, position);
-    }
-    std::vector<std::uint32_t> codes, order(scene.size());
-    for (const glm::vec3& position : scene.positions) {
-        const glm::uvec3 cell(1023.0f * (position - low) / glm::max(high - low, glm::vec3(1e-30f)));
-        std::uint32_t code = 0;
-        for (int bit = 0; bit < 10; ++bit) {
-            for (int axis = 0; axis < 3; ++axis) { code |= (cell[axis] >> bit & 1u) << (3 * bit + axis); }
-        }
-        codes.push_back(code);
-    }
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t splat) { return codes[splat]; });
-    return splatsOf(scene, order);
+    return pickSplats(scene, mortonOrder(findSogPlaces(scene)));
 }
 
 inline std::uint32_t pagesOf(std::size_t splats) {
