@@ -105,6 +105,14 @@ struct Home : Workplace {
 };
 #endif
 
+// Of a library that need not be linked.
+template <typename Function>
+Function* functionIn(const char* library, const char* name) {
+    void* const function = functionOf(library, name);
+    REQUIRE_MESSAGE(function != nullptr, name);
+    return reinterpret_cast<Function*>(function);
+}
+
 // For facts that use one: TEST_CASE_FIXTURE(AtWork, "...").
 struct AtWork {
     const Workplace work;

@@ -130,6 +130,20 @@ Range within(Low low, High high) {
     return {static_cast<double>(low), static_cast<double>(high), true};
 }
 
+// Numbers of four bytes, the highest byte first.
+inline std::string bigWord(std::uint32_t value) {
+    std::string bytes;
+    for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(value >> shift); }
+    return bytes;
+}
+inline std::uint32_t bigWordAt(const std::string& bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) {
+        value = value << 8 | static_cast<unsigned char>(bytes.at(i));
+    }
+    return value;
+}
+
 // From 0 to 1; the numbers of std::mt19937 are the same everywhere, those of distributions are not.
 inline double drawUnit(std::mt19937& random) { return static_cast<double>(random() >> 8) / 16777216.0; }
 inline double drawBetween(std::mt19937& random, double low, double high) {

@@ -1,29 +1,9 @@
 // Facts about an installed program; see install_test.txt.
+#include "tests/app/document_links.h"
 #include "tests/app/program_script.h"
 #include "tests/engine/files/web/web_server.h"
 
-#include <regex>
-
 SUITE(install) {
-
-// Links between the documents lead somewhere.
-void checkLinks(const fs::path& documents) {
-    const std::regex link(R"(\]\(([^)\s#]+)[^)\s]*\))");
-    int links = 0;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(documents)) {
-        if (entry.path().extension() != ".md") { continue; }
-        const std::string text = textIn(entry.path());
-        for (std::sregex_iterator match(text.begin(), text.end(), link); match != std::sregex_iterator{};
-             ++match) {
-            const std::string target = (*match)[1];
-            if (target.starts_with("http")) { continue; }
-            CHECK_MESSAGE(fs::exists(entry.path().parent_path() / target), entry.path().string()
-                                                                               << ": " << target);
-            ++links;
-        }
-    }
-    CHECK(links > 50);
-}
 
 // The example draws a scene from a server just as it draws the file.
 void checkFetched(const Workplace& work, const std::string& scene) {
@@ -56,7 +36,7 @@ SCRIPT(install, "app/install") {
     if (host.features.contains("openxr")) {
         host.features.insert(has_other ? "openxr-twice" : "openxr-alone");
     }
-    host.verbs["links"] = checkLinks;
+    host.verbs["links"] = [](const std::string& folder) { checkLinks(documentsIn(folder)); };
     host.verbs["fetch"] = [&](const std::string& scene) { checkFetched(work, scene); };
     runScript(host);
 }

@@ -12,9 +12,7 @@ SUITE(file_portal) {
 
 template <typename Function>
 Function* call(const char* name) {
-    void* const function = functionOf("libsystemd.so.0", name);
-    REQUIRE(function != nullptr);
-    return reinterpret_cast<Function*>(function);
+    return functionIn<Function>("libsystemd.so.0", name);
 }
 
 // Answers the call, and then says what was chosen; nothing if `uri` is null.

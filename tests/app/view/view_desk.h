@@ -40,6 +40,7 @@ public:
         picture_ = picture_.substr(picture_.rfind(": picture ") + 10);
         picture_.pop_back();
     }
+    static Image shown() { return partOf(desk().screen.picture(), {0, 0}, {1280, 720}); }
     [[nodiscard]] const std::string& picture() const { return picture_; }  // file of the latest picture
     // The colour at a place, after the keys and clicks that came before; then returns to the start view.
     glm::dvec3 seenAt(const glm::dvec2& place) {
@@ -57,10 +58,7 @@ public:
         return point;
     }
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
-        for (const std::string& does : {moveTo(from), fmt::format("mousedown {}", button), moveTo(to),
-                                        fmt::format("mouseup {}", button)}) {
-            hands(does);
-        }
+        for (const std::string& does : dragOf(button, from, to)) { hands(does); }
     }
     // Clicks on the panel, which has a scale of 0.7 and is in the upper right corner; on its page of scenes a
     // folder may be open.
@@ -68,7 +66,7 @@ public:
         PanelSketch sketch;
         sketch.status.window.emplace();
         sketch.settings.page = page;
-        if (!folder.empty()) { sketch.chooser.showFolder(folder); }
+        if (!folder.empty()) { sketch.showFolder(folder); }
         const glm::dvec2 size(glm::ivec2(0.7 * glm::dvec2(kPanelPx)));
         hands(moveTo(glm::dvec2(1280.0 - size.x, 0.0) + shareOf(sketch.draw().places, widget) * size) +
               "click 1");

@@ -18,37 +18,35 @@ constexpr int kFewestWarm = 5, kMostWarm = 60;
 
 // Rounds of ten seconds. The wearer stands still whenever the panel appears, so that it can be pointed at.
 std::string walkOf(int rounds, const std::string& folder) {
-    const std::string page = pointingAt(panelBefore(), placeOf("Scenes")),
-                      next = pointingAt(panelBefore(), placeOfScene("Next scene", folder));
-    // @ is a round's beginning.
-    const std::string acts = fmt::format(
-        "head @0 position 0 1.6 0 turn 0 0\nhead @2.4 position 0 1.6 0\nhead @3.5 position 0.3 1.5 -0.5 turn "
-        "25 -10\n"
-        "head @4.6 position 0 1.6 0 turn 0 0\ncontroller right @0.2 {0}\ncontroller right @0.8 {0}\n"
-        "controller right @0.9 {1}\ncontroller right @1.5 {1}\npress right trigger @0.4 @0.7\n"
-        "controller right @2.5 position 0.5 1.3 -0.5 turn -60 10\npress right trigger @1.0 @1.3\n"
-        "controller right @4.5 position 0.3 1.1 -0.4 turn -80 -10\npress right squeeze @2.7 @4.4\n"
-        "press left squeeze @3.2 @4.0\naxis left thumbstick @4.7 0 0\naxis left thumbstick @4.8 0.3 1\n"
-        "axis left thumbstick @5.4 0.3 1\naxis left thumbstick @5.5 0 0\nat @5.0 recentre\nat @5.8 worn off\n"
-        "at @6.3 worn on\nat @7.5 lose-session\nat @8.5 head off\nat @8.8 head on\nat @9.0 rate {2}\n"
-        "at @9.5 rate {3}\n",
-        page, next, 2 * kRate, kRate);
-    std::string script = fmt::format(
-        "rate {}\nsize 64 64\nframes none\nvisibility-mask on\nimages 3 shuffled\nirregular 20\n"
-        "state-changes at-begin\n",
-        kRate);
+    Acts acts(
+        fmt::format("rate {}\nsize 64 64\nframes none\nvisibility-mask on\nimages 3 shuffled\nirregular 20\n"
+                    "state-changes at-begin\n",
+                    kRate));
     for (int round = 0; round < rounds; ++round) {
-        std::istringstream parts(acts);
-        std::string part;
-        std::getline(parts, part, '@');
-        for (script += part; std::getline(parts, part, '@');) {
-            std::size_t end = 0;
-            const double time_s = kRound * round + std::stod(part, &end);
-            script += fmt::format("{:.2f}{}", time_s, part.substr(end));
+        const auto at = [&](double seconds) -> Acts& {
+            acts.now_s = kRound * round + seconds;
+            return acts;
+        };
+        at(0.2).point(placeOf("Scenes"));
+        at(0.4).hold("right trigger", 0.3);
+        at(0.8).point(placeOfScene("Next scene", folder));
+        at(1.0).hold("right trigger", 0.3);
+        at(1.5).right("position 0.5 1.3 -0.5 turn -60 10", 1.0);
+        at(2.4).head("position 0.3 1.5 -0.5 turn 25 -10", 1.1).head("position 0 1.6 0 turn 0 0", 1.1);
+        at(2.6).right("position 0.3 1.1 -0.4 turn -80 -10", 1.9);
+        at(2.7).hold("right squeeze", 1.7);
+        at(3.2).hold("left squeeze", 0.8);
+        at(4.7).push("left thumbstick", {0.3, 1.0}, 0.7);
+        for (const auto& [seconds, event] :
+             {std::pair(5.0, "recentre"), std::pair(5.8, "worn off"), std::pair(6.3, "worn on"),
+              std::pair(7.5, "lose-session"), std::pair(8.5, "head off"), std::pair(8.8, "head on")}) {
+            at(seconds).at(event);
         }
+        at(9.0).at(fmt::format("rate {}", 2 * kRate));
+        at(9.5).at(fmt::format("rate {}", kRate));
     }
-    script += fmt::format("at {:.2f} exit\n", kRound * rounds);
-    return script;
+    acts.now_s = kRound * rounds;
+    return acts;
 }
 
 // What was alive during ten submissions.

@@ -3,6 +3,8 @@
 
 #include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
+#include "engine/similarity.h"
+#include "tests/engine/picture/pictures.h"
 #include "tests/run_program.h"
 
 #include <glm/glm.hpp>
@@ -218,6 +220,11 @@ inline nlohmann::json savedOfWall(const Workplace& work, const std::string& key)
     REQUIRE(at != std::string::npos);
     return nlohmann::json::parse(text.substr(begin, text.find('\n', begin) - begin));
 }
+inline Similarity placementAtWall(const Workplace& work) {
+    const auto p = savedOfWall(work, "scene-position").get<std::array<double, 3>>();
+    const auto q = savedOfWall(work, "scene-orientation").get<std::array<double, 4>>();
+    return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}, savedOfWall(work, "units-per-metre").get<double>()};
+}
 
 // The run succeeded and reported nothing: beside `errors`, what the layers themselves say.
 inline void checkEnded(const ViewRun& run, const std::string& errors = "") {
@@ -241,6 +248,14 @@ inline ViewRun runClean(const Workplace& work, const std::string& script, const 
     return run;
 }
 
+// Something was visible in every frame.
+inline void checkAlwaysShown(const ViewRun& run) {
+    REQUIRE(run.frames.size() > 8);
+    for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) {
+        REQUIRE(run.layers(frame, "projection").size() == 1);
+    }
+}
+
 // The run printed these in this order.
 inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said) {
     std::size_t from = 0;
@@ -252,19 +267,13 @@ inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said)
     }
 }
 
-using Colour = std::array<float, 3>;
-inline Colour colourAt(const Image& image, glm::uvec2 at) {
-    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) *
-                                          static_cast<std::size_t>(image.channels));
-    return {value[0], value[1], value[2]};
-}
 // For pictures of the same size; compares pixels at the same place.
 template <typename Condition>
 std::size_t countPixels(const Image& a, const Image& b, const Condition& condition) {
     std::size_t found = 0;
     for (std::size_t i = 0; i < a.pixelCount(); ++i) {
         const glm::uvec2 at(i % a.size_px.x, i / a.size_px.x);
-        found += condition(colourAt(a, at), colourAt(b, at));
+        found += condition(colourOf(a, at.x, at.y), colourOf(b, at.x, at.y));
     }
     return found;
 }

@@ -260,7 +260,7 @@ TEST_CASE_FIXTURE(AtWork, "while a scene loads frames go on, the room behind it,
     // The background and the panel's progress were there from the first visible frame on.
     CHECK(countFramesWithLayers(run) >= 15);
     CHECK(run.frames.size() < 40);
-    CHECK(colourAt(run.eye(3, kLeft), {31, 0})[1] == doctest::Approx(0.9).epsilon(0.01));
+    CHECK(colourOf(run.eye(3, kLeft), 31, 0).g == doctest::Approx(0.9).epsilon(0.01));
     // The same before the first picture.
     CHECK(runClean(work, kSmall + "at 0 exit\n", kOneEye).frames.size() < 20);
 }
@@ -313,9 +313,11 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
         for (const int side : {kLeft, kRight}) {
             INFO("look ", look, ", side ", side);
             const Image a = without.eye(frame, side), b = with.eye(frame, side);
-            const auto isBlack = [](const Colour&, const Colour& after) { return after == Colour{}; };
-            const auto isOther = [](const Colour& before, const Colour& after) {
-                return after != Colour{} && after != before;
+            const auto isBlack = [](const glm::vec3&, const glm::vec3& after) {
+                return after == glm::vec3(0);
+            };
+            const auto isOther = [](const glm::vec3& before, const glm::vec3& after) {
+                return after != glm::vec3(0) && after != before;
             };
             if (look == 0) {
                 CHECK(a.values == b.values);

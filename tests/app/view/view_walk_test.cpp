@@ -1,4 +1,5 @@
 // Facts about how the wearer moves: by sticks, pads, hands and viewpoints, and along the ground.
+#include "tests/app/camera_file.h"
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_walk) {
@@ -30,15 +31,8 @@ TEST_CASE_FIXTURE(AtWork, "who follows the ground walks down a slope, by the dep
 
 TEST_CASE_FIXTURE(AtWork, "sticks, pads, hands, viewpoints and buttons move the wearer, nothing else") {
     work.go("scene one-splat --out a.ply");
-    std::string cameras;
-    for (const char* its : {R"("door", "position": [0,0,0])", R"("window", "position": [0.5,0,0])",
-                            R"("stairs", "position": [0,0,0.5])"}) {
-        cameras += fmt::format(R"({{"width": 8, "height": 8, "rotation": [[1,0,0],[0,1,0],[0,0,1]], "fx": 8,)"
-                               R"( "fy": 8, "img_name": {}}},)",
-                               its);
-    }
-    cameras.back() = ']';
-    work.write("cameras.json", "[" + cameras);
+    work.write("cameras.json", "[" + cameraJson("door", {0, 0, 0}) + "," + cameraJson("window", {0.5, 0, 0}) +
+                                   "," + cameraJson("stairs", {0, 0, 0.5}) + "]");
     Acts acts("rate 50\nsize 64 64\nframes none\n");
     const auto keep = [&] { acts.click(onScenes("Keep this one")).wait(0.05); };
     const auto push = [&](const std::string& stick, const glm::dvec2& to) {
@@ -178,7 +172,7 @@ TEST_CASE_FIXTURE(AtWork, "the view's edge is dark while a stick moves the weare
         CHECK(run.beforeEyes(run.frameAt(seconds)).size() == (seconds == during ? 1 : 0));
     }
     const auto at = [&](double seconds, glm::uvec2 place) {
-        return colourAt(run.eye(run.pictureAt(seconds), kLeft), place)[0];
+        return colourOf(run.eye(run.pictureAt(seconds), kLeft), place.x, place.y).r;
     };
     CHECK(at(during, {1, 1}) < 0.5f * at(before, {1, 1}));
     CHECK(at(during, {32, 1}) < 0.7f * at(before, {32, 1}));

@@ -1,7 +1,6 @@
 // The viewer beside its window, on a display without a screen (Xvfb), with a mouse and keys (xdotool).
 #pragma once
 
-#include "engine/similarity.h"
 #include "tests/app/view/view_acts.h"
 #include "tests/xr/simulated/installed.h"
 
@@ -107,22 +106,13 @@ public:
     // An X window dump of 32 bits a pixel: header, colours, rows. Its numbers have their highest byte first.
     [[nodiscard]] Image picture() const {
         const std::string bytes = textIn(folder_ / "Xvfb_screen0");
-        const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(bytes.at(at)); };
-        const auto number = [&](std::size_t index) {
-            std::size_t value = 0;
-            for (std::size_t i = 0; i < 4; ++i) { value = value * 256 + byte(4 * index + i); }
-            return value;
-        };
+        const auto number = [&](std::size_t index) { return bigWordAt(bytes, 4 * index); };
         constexpr std::size_t kBytesPerColour = 12;
         const std::size_t start = number(0) + kBytesPerColour * number(19), row_bytes = number(12);
-        Image image{{number(4), number(5)}, 3, {}};
-        REQUIRE(bytes.size() >= start + row_bytes * image.size_px.y);
-        for (std::size_t i = 0; i < image.pixelCount(); ++i) {
-            const std::size_t at = start + i / image.size_px.x * row_bytes + i % image.size_px.x * 4;
-            for (const std::size_t c : {2, 1, 0}) {
-                image.values.push_back(static_cast<float>(byte(at + c)) / 255.0f);
-            }
-        }
+        const Image image = makePicture({number(4), number(5)}, [&](std::uint32_t x, std::uint32_t y) {
+            const std::uint32_t colour = bigWordAt(bytes, start + row_bytes * y + 4 * std::size_t{x});
+            return glm::vec3(colour >> 8 & 255, colour >> 16 & 255, colour >> 24) / 255.0f;
+        });
         return image;
     }
 
@@ -138,14 +128,13 @@ public:
 class XConnection {
 public:
     explicit XConnection(const std::string& name) {
-        REQUIRE(library_ != nullptr);
-        display_ = find<void* (*)(const char*)>("XOpenDisplay")(name.c_str());
+        display_ = find<void*(const char*)>("XOpenDisplay")(name.c_str());
         REQUIRE(display_ != nullptr);
     }
     // The scale that desktops tell programs; it holds as long as a client is connected.
     void setDpi(int dpi) const {
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
-        const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
+        const unsigned long root = find<unsigned long(void*)>("XDefaultRootWindow")(display_);
         constexpr unsigned long kResourceManager = 23, kString = 31;
         change(root, kResourceManager, kString, 8, resources.data(), resources.size());
     }
@@ -177,38 +166,34 @@ public:
             std::array<int, 17> rest{};
         } hints;
         long supplied = 0;
-        REQUIRE(find<int (*)(void*, unsigned long, void*, long*)>("XGetWMNormalHints")(
-                    display_, window, &hints, &supplied) != 0);
+        REQUIRE(find<int(void*, unsigned long, void*, long*)>("XGetWMNormalHints")(display_, window, &hints,
+                                                                                   &supplied) != 0);
         constexpr long kMostSize = 1 << 5, kShape = 1 << 7;
         return {(hints.flags & kMostSize) == 0, (hints.flags & kShape) != 0};
     }
 
 private:
     [[nodiscard]] unsigned long atomOf(const char* name) const {
-        return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
+        return find<unsigned long(void*, const char*, int)>("XInternAtom")(display_, name, 0);
     }
     // A property of a window: `count` numbers of this many bits.
     void change(unsigned long window, unsigned long property, unsigned long kind, int bits,
                 const void* numbers, std::size_t count) const {
-        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const void*, int)>(
+        find<int(void*, unsigned long, unsigned long, unsigned long, int, int, const void*, int)>(
             "XChangeProperty")(display_, window, property, kind, bits, 0, numbers, static_cast<int>(count));
-        find<int (*)(void*, int)>("XSync")(display_, 0);
+        find<int(void*, int)>("XSync")(display_, 0);
     }
     // An XEvent is 24 longs.
     void send(unsigned long window, std::array<unsigned long, 24> event) const {
-        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0,
-                                                                                  event.data()) != 0);
-        find<int (*)(void*, int)>("XSync")(display_, 0);
+        CHECK(find<int(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0,
+                                                                              event.data()) != 0);
+        find<int(void*, int)>("XSync")(display_, 0);
     }
     template <typename Function>
-    Function find(const char* name) const {
-        const auto function = reinterpret_cast<Function>(dlsym(library_, name));
-        const bool is_there = function != nullptr;
-        REQUIRE(is_there);
-        return function;
+    static Function* find(const char* name) {
+        return functionIn<Function>("libX11.so.6", name);
     }
 
-    void* library_ = dlopen("libX11.so.6", RTLD_NOW);
     void* display_ = nullptr;
 };
 
@@ -226,6 +211,9 @@ inline const Desk& desk(int dpi = 96) {
 }
 inline std::string moveTo(const glm::dvec2& place) {
     return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y);
+}
+inline std::vector<std::string> dragOf(int button, const glm::dvec2& from, const glm::dvec2& to) {
+    return {moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)};
 }
 inline void hands(const std::string& does) {
     const std::string command =
@@ -291,17 +279,13 @@ public:
         handsInTurn({moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx), "mousedown 1", "mouseup 1"});
     }
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
-        handsInTurn({moveTo(from), fmt::format("mousedown {}", button), moveTo(to),
-                     fmt::format("mouseup {}", button)});
+        handsInTurn(dragOf(button, from, to));
     }
     // Where the wearer's room is now, according to the viewer's saved settings.
     Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
         await("slanted-wall.view.toml");
-        const auto p = savedOfWall(work, "scene-position").get<std::array<double, 3>>();
-        const auto q = savedOfWall(work, "scene-orientation").get<std::array<double, 4>>();
-        const auto scale = savedOfWall(work, "units-per-metre").get<double>();
-        return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}, scale};
+        return placementAtWall(work);
     }
 };
 

@@ -75,8 +75,7 @@ TEST_CASE_FIXTURE(AtWork, "names bring their letters along, those of no font sta
     // They stay, whatever is shown next. Chinese comes from the first font of the system that has it.
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
     work.write(chinese, "x");
-    sketch.settings.page = PanelPage::kScenes;
-    sketch.chooser.showFolder(work.path.string());
+    sketch.showFolder(work.path);
     CHECK(sketch.draw().places.contains(chinese));
     CHECK(isThere(0x5d0));
     const std::vector<fs::path> further = furtherSystemFonts();
@@ -217,27 +216,15 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
     CHECK_FALSE(isFont(nameless));
     CHECK_FALSE(isFont("ttcf" + whole.substr(4)));
     // A collection: the same tables, each 16 bytes farther from the beginning of the file.
-    const auto number = [](std::uint32_t value) {
-        std::string bytes;
-        for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(value >> shift); }
-        return bytes;
-    };
     std::string moved = whole;
-    const auto numberAt = [&](std::size_t at, std::size_t bytes) {
-        std::uint32_t value = 0;
-        for (std::size_t i = 0; i < bytes; ++i) {
-            value = value << 8 | static_cast<unsigned char>(moved[at + i]);
-        }
-        return value;
-    };
-    for (std::size_t record = 12; record < 12 + 16 * numberAt(4, 2); record += 16) {
-        moved.replace(record + 8, 4, number(numberAt(record + 8, 4) + 16));
+    for (std::size_t record = 12; record < 12 + 16 * (bigWordAt(whole, 4) >> 16); record += 16) {
+        moved.replace(record + 8, 4, bigWord(bigWordAt(whole, record + 8) + 16));
     }
-    CHECK(isFont("ttcf" + number(0x00010000) + number(1) + number(16) + moved));
+    CHECK(isFont("ttcf" + bigWord(0x00010000) + bigWord(1) + bigWord(16) + moved));
     // Of an unknown version, with no font, and with one that lies outside.
     for (const std::string& head :
-         {number(0x00030000) + number(1) + number(16), number(0x00010000) + number(0) + number(16),
-          number(0x00010000) + number(1) + number(0x7fffffff)}) {
+         {bigWord(0x00030000) + bigWord(1) + bigWord(16), bigWord(0x00010000) + bigWord(0) + bigWord(16),
+          bigWord(0x00010000) + bigWord(1) + bigWord(0x7fffffff)}) {
         CHECK_FALSE(isFont("ttcf" + head + moved));
     }
 }

@@ -46,6 +46,11 @@ public:
         ImGui::Render();
         return requests;
     }
+    // Opens a folder on the page of scenes.
+    void showFolder(const fs::path& folder) {
+        settings.page = PanelPage::kScenes;
+        chooser.showFolder(folder.string());
+    }
     // As the viewer does alongside its frames; false if there were no new letters.
     bool bringLetters(const std::string& text, const std::vector<ScenePicture>& shown = {}) {
         if (!font->want(text, shown)) { return false; }
@@ -144,8 +149,7 @@ inline glm::dvec2 placeOfTime(const std::string& name, bool plays, PanelPage pag
 // On the page of scenes, with `folder` open.
 inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
     PanelSketch sketch;
-    sketch.settings.page = PanelPage::kScenes;
-    sketch.chooser.showFolder(folder);
+    sketch.showFolder(folder);
     return shareOf(sketch.draw().places, name);
 }
 

@@ -55,9 +55,8 @@ TEST_CASE_FIXTURE(AtWork, "no folder is read while the panel is drawn, and an ou
     fs::create_directory(work.path / "inner");
     work.write("inner/a.ply", "x");
     PanelSketch sketch;
-    sketch.settings.page = PanelPage::kScenes;
     SceneChooser& chooser = sketch.chooser;
-    chooser.showFolder(work.path.string());
+    sketch.showFolder(work.path);
     const std::optional<SceneListWish> first = chooser.takeWish();
     REQUIRE(first.has_value());
     CHECK_FALSE(chooser.takeWish().has_value());
@@ -99,8 +98,7 @@ TEST_CASE_FIXTURE(AtWork, "names of any bytes and length are shown, and a long m
         work.write(name, "x");
     }
     PanelSketch sketch;
-    sketch.settings.page = PanelPage::kScenes;
-    sketch.chooser.showFolder(work.path.string());
+    sketch.showFolder(work.path);
     CHECK(sketch.draw().places.size() == 26 + 2 * 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
     CHECK(asShown("a\nb\x1b[1m\x7f") == "a\ufffdb\ufffd[1m\ufffd");

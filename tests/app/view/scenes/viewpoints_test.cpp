@@ -2,6 +2,7 @@
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/settings/view_state.h"
+#include "tests/app/camera_file.h"
 #include "tests/run_program.h"
 
 SUITE(viewpoints) {
@@ -43,9 +44,7 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
                    old = viewFileStem(scene).string() + ".viewpoints.txt";
     fs::create_directories(kept.parent_path());
     std::ofstream(old) << "0 0 1  0 0 2  0 -1 0\n0 0 3  1 0 3  0 -1 0\n";
-    write("cameras.json",
-          R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
-                                    "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    write("cameras.json", "[" + cameraJson("door", {5, 0, 0}) + "]");
     // Lines that are not views: one looks along its own up, and one is incomplete.
     std::ofstream(old, std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
     const std::vector<Viewpoint> found = findViewpoints({}, scene, {});
