@@ -43,27 +43,6 @@ TEST_CASE_FIXTURE(AtWork, "while a button is held the other scene is seen from t
     CHECK(frames > 30);
 }
 
-TEST_CASE_FIXTURE(AtWork, "the panel compares with the scene chosen next, and ends the comparison") {
-    const fs::path scenes = work.path / "scenes";
-    fs::create_directory(scenes);
-    work.write("scenes/broken.ply", "ply\nnonsense\n");
-    work.go("scene one-splat --out scenes/one.ply");
-    work.go("scene slanted-wall --out scenes/wall.ply");
-    Acts acts("rate 45\nsize 64 64\nframes none\n");
-    acts.wait(1.0);
-    for (const char* widget : {"Compare", "broken.ply", "Compare", "wall.ply", "Other", "Other", "Compare"}) {
-        acts.point(placeOfScene(widget, scenes.string())).wait(0.25).press("right trigger", 0.3).wait(0.4);
-    }
-    const ViewRun run = runClean(
-        work, acts, "scenes/one.ply --load-first --mode shared --hide-hands" + withConfig(work, kScenesPage),
-        kValidated + " SIMULATED_OPENXR_CLOCK=real");
-    INFO(run.outcome.output);
-    const std::string wall = (scenes / "wall.ply").string();
-    checkOrder(run, {"shows scenes/one.ply", "to compare with scenes/one.ply",
-                     "broken.ply:", "to compare with scenes/one.ply", "compares scenes/one.ply with " + wall,
-                     "shows " + wall, "shows scenes/one.ply", wall + " is no longer compared with"});
-}
-
 TEST_CASE_FIXTURE(AtWork, "where two scenes do not fit together, a line says so, and the first one stays") {
     work.go("scene atelier --splats 20000 --out many.ply");
     const ViewRun run = runClean(

@@ -5,24 +5,18 @@
 
 namespace binosplat::test {
 
+// Frames take no time, so none is drawn smaller to save time.
 inline const std::string kWatched =
-    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
-    "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-    "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-    "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
-    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
+    withXrFaults("", withFaults("BINOSPLAT_FAULT_WAITS=waits.txt BINOSPLAT_FAULT_TICKS=1", kAlone));
 
 // For each frame, what it did that may wait.
 inline std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
     std::vector<std::set<std::string>> kinds;
-    std::ifstream file(work.path / "waits.txt");
-    for (std::string line; std::getline(file, line);) {
-        std::istringstream words(line);
-        std::string number, kind, count;
-        words >> number;
-        CHECK(number == std::to_string(kinds.size()));
+    for (const std::string& line : linesIn(work.bytesOf("waits.txt"))) {
+        const std::vector<std::string> words = wordsIn(line);
+        CHECK(words.at(0) == std::to_string(kinds.size()));
         kinds.emplace_back();
-        while (words >> kind >> count) { kinds.back().insert(kind); }
+        for (std::size_t i = 1; i < words.size(); i += 2) { kinds.back().insert(words[i]); }
     }
     return kinds;
 }
@@ -38,6 +32,24 @@ inline void checkQuiet(const Workplace& work, std::size_t first_frames = 45) {
     for (std::size_t frame = first_frames; frame < waits.size(); ++frame) {
         CHECK_MESSAGE(waits[frame].empty(), frame, ": ", listed(waits[frame]));
     }
+}
+
+// Runs the viewer, which complains of nothing.
+inline ViewRun runWatched(const Workplace& work, const std::string& script, const std::string& arguments,
+                          const std::string& environment = "") {
+    ViewRun run = runView(work, "run", script, arguments, kWatched + " " + environment);
+    INFO(run.outcome.output << run.outcome.errors);
+    CHECK(these(run.outcome.exit_code, run.outcome.errors, run.says("VUID")) == these(0, "", false));
+    return run;
+}
+
+// Without hands; every frame is complete.
+inline ViewRun runQuiet(const Workplace& work, const std::string& script, const std::string& arguments,
+                        const std::string& environment = "", std::size_t first_frames = 45) {
+    ViewRun run = runWatched(work, script, arguments + " --hide-hands", environment);
+    CHECK_FALSE(run.says("frames shown incomplete"));
+    checkQuiet(work, first_frames);
+    return run;
 }
 
 }  // namespace binosplat::test

@@ -12,9 +12,13 @@
 
 SUITE(view_quiet) {
 
+const std::string kBlind = "rate 45\nsize 64 64\nframes none\n", kMasked = "visibility-mask on\n",
+                  kStill = kBlind + "head 0 position 0 1.6 0\n", kRealClock = "SIMULATED_OPENXR_CLOCK=real",
+                  kWallIn = "builtin:slanted-wall --load-first --mode ";
 // A snap turn, a step, the panel away and back again, a hand that points at it; then the session is lost.
 const std::string kStay =
-    "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 4 position 0.2 1.6 -0.1 turn 15 0\n"
+    kStill +
+    "head 4 position 0.2 1.6 -0.1 turn 15 0\n"
     "axis right thumbstick 1.2 0 0\naxis right thumbstick 1.21 1 0\naxis right thumbstick 1.3 1 0\naxis "
     "right thumbstick 1.31 0 0\n"
     "axis left thumbstick 1.6 0 0\naxis left thumbstick 1.61 0 1\naxis left thumbstick 1.9 0 1\naxis left "
@@ -35,16 +39,35 @@ constexpr Known kKnown[]{
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
 
+using Modes = std::vector<std::string>;
+void eachMode(const Modes& modes, const std::function<void(const Workplace&, const std::string& mode)>& run) {
+    for (const std::string& mode : modes) {
+        CAPTURE(mode);
+        run(Workplace(), mode);
+    }
+}
+const Modes kThreeModes{"temporal", "predicted", "shared"};
+
+// Frames may be late.
+void clickSlowly(Acts& acts, const glm::dvec2& share) {
+    acts.point(share).wait(0.25).press("right trigger", 0.3);
+}
+
+// The pixels of the left eye's pictures, in frames that show something.
+std::vector<int> widthsOf(const ViewRun& run, std::size_t first_frame) {
+    std::vector<int> widths;
+    for (std::size_t frame = first_frame; frame < run.frames.size(); ++frame) {
+        if (run.layers(frame, "projection").empty()) { continue; }
+        widths.push_back(run.view(frame).at("rect").at(2).get<int>());
+    }
+    return widths;
+}
+
 TEST_CASE(
     "no frame of a running viewer waits or makes anything after the first second, until its session is "
     "lost") {
-    for (const std::string mode : {"temporal", "predicted"}) {
-        CAPTURE(mode);
-        const Workplace work;
-        const ViewRun run =
-            runView(work, "stay", kStay, "builtin:slanted-wall --load-first --mode " + mode, kWatched);
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+    eachMode({"temporal", "predicted"}, [](const Workplace& work, const std::string& mode) {
+        const ViewRun run = runWatched(work, kStay, kWallIn + mode);
         std::map<const Known*, std::set<std::string>> found;
         const std::vector<std::set<std::string>> waits = waitsOf(work);
         for (std::size_t frame = 0; frame < waits.size(); ++frame) {
@@ -59,187 +82,150 @@ TEST_CASE(
         CHECK(run.panels(waits.size() * 2 / 3).empty());
         // All of it must occur, or it must be removed from the list.
         for (const Known& known : kKnown) { CHECK(listed(found[&known]) == known.kinds); }
-    }
+    });
 }
 
 TEST_CASE("the cut to the other scene of a comparison, and back, waits for nothing") {
     // In the first second everything is made, for both.
-    const std::string script =
-        "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\npress right a 1.4 1.8\npress right a 2 "
-        "2.4\nat 3 exit\n";
-    for (const std::string mode : {"temporal", "predicted", "shared"}) {
-        CAPTURE(mode);
-        const Workplace work;
-        const ViewRun run =
-            runView(work, "cut", script,
-                    "builtin:slanted-wall --compare builtin:fence --load-first --hide-hands --mode " + mode,
-                    kWatched);
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+    eachMode(kThreeModes, [](const Workplace& work, const std::string& mode) {
+        const ViewRun run = runQuiet(work, kStill + "press right a 1.4 1.8\npress right a 2 2.4\nat 3 exit\n",
+                                     kWallIn + mode + " --compare builtin:fence");
         CHECK(run.lines("shows builtin:fence").size() == 2);
-        std::ifstream file(work.path / "waits.txt");
-        std::size_t frames = 0;
-        for (std::string line; std::getline(file, line); ++frames) {
-            CHECK_MESSAGE((frames < 45 || line == std::to_string(frames)), line);
-        }
-        CHECK(frames == run.frames.size());
-    }
-}
-
-// A wall with viewpoints: one beside the start, one that looks the other way.
-std::string wallWithViewpoints(const Workplace& work) {
-    REQUIRE(work.run("scene slanted-wall --out wall.ply").exit_code == 0);
-    work.write("wall.viewpoints.json", R"({"viewpoints": [
-        {"name": "beside", "eye": [0.6, 0, -0.4], "look": [0, 0, 3], "up": [0, -1, 0]},
-        {"name": "away", "eye": [0, 0, 0], "look": [0, 0, -3], "up": [0, -1, 0]}]})");
-    return "wall.ply";
+    });
 }
 
 TEST_CASE(
     "nor does one while pictures are taken, a message appears, and the wearer jumps, turns and comes back") {
-    for (const std::string mode : {"temporal", "predicted", "shared"}) {
-        CAPTURE(mode);
-        const Workplace work;
+    eachMode(kThreeModes, [](const Workplace& work, const std::string& mode) {
         picturesInto(work);
-        const std::string scene = wallWithViewpoints(work);
-        Acts acts("rate 45\nsize 64 64\nframes none\n");
-        acts.wait(1.0)
-            .click(placeOf("Picture"))
-            .click(placeOf("Picture"))
-            .press("left y")
-            .move("controller right", kRightDown);
+        // One viewpoint is beside the start, one looks the other way.
+        work.go("scene slanted-wall --out wall.ply");
+        work.write("wall.viewpoints.json", R"({"viewpoints": [
+            {"name": "beside", "eye": [0.6, 0, -0.4], "look": [0, 0, 3], "up": [0, -1, 0]},
+            {"name": "away", "eye": [0, 0, 0], "look": [0, 0, -3], "up": [0, -1, 0]}]})");
+        Acts acts(kBlind);
+        acts.wait(1.0).click(placeOf("Picture")).click(placeOf("Picture"));
+        acts.press("left y").right(kRightDown);
         // From one viewpoint to the next.
         for (int round = 0; round < 3; ++round) { acts.press("right thumbstick").wait(0.2); }
         for (const double aside : {1.0, -1.0}) { acts.push("right thumbstick", {aside, 0.0}, 0.1).wait(0.2); }
         acts.press("left y").click(placeOf("Picture")).wait(0.2);
-        const ViewRun run = runView(work, "jumps", acts.script(),
-                                    scene + " --load-first --hide-hands --mode " + mode, kWatched);
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        const ViewRun run = runQuiet(work, acts, "wall.ply --load-first --mode " + mode);
         checkOrder(run, {"viewpoint 1 of 2: beside", "viewpoint 2 of 2: away", "viewpoint 1 of 2: beside"});
         CHECK(run.lines("picture " + work.path.string() + "/pictures/wall-20").size() == 3);
-        CHECK_FALSE(run.says("frames shown incomplete"));
-        checkQuiet(work);
-    }
+    });
 }
 
-TEST_CASE("a scene is exchanged for another one, and a picture of it kept, without a wait") {
-    for (const std::string mode : {"temporal", "predicted", "shared"}) {
-        CAPTURE(mode);
-        const Workplace work;
-        std::filesystem::create_directory(work.path / "scenes");
-        for (const char* const scene : {"slanted-wall", "one-splat"}) {
-            REQUIRE(work.run(fmt::format("scene {0} --out scenes/{0}.ply", scene)).exit_code == 0);
+// Two scenes in a folder, the latter with new letters in its name, and a broken one in between.
+const std::string kFirst = "slanted-wall.ply", kOther = "\u05d7\u05d3\u05e8.ply", kBroken = "torn.ply";
+fs::path makeScenes(const Workplace& work) {
+    fs::create_directory(work.path / "scenes");
+    work.go("scene slanted-wall --out scenes/" + kFirst);
+    work.go("scene one-splat --out scenes/" + kOther);
+    work.write("scenes/" + kBroken, "ply\nnonsense\n");
+    return work.path / "scenes";
+}
+ViewRun runScenes(const Workplace& work, const Acts& acts, const std::string& mode) {
+    return runQuiet(work, acts,
+                    "scenes/" + kFirst + " --load-first --mode " + mode + withConfig(work, kScenesPage),
+                    kRealClock, 20);
+}
+
+TEST_CASE("a scene is exchanged, and a picture of it kept, without a wait; a broken one gives a message") {
+    eachMode(kThreeModes, [](const Workplace& work, const std::string& mode) {
+        const fs::path scenes = makeScenes(work);
+        Acts acts(kBlind + kMasked);
+        // The scene must have been seen in thirty frames.
+        acts.wait(4.0);
+        for (const std::string& widget : {kBroken, std::string("Next scene"), kFirst}) {
+            clickSlowly(acts, placeOfScene(widget, scenes.string()));
+            acts.wait(1.0);
         }
-        Acts acts("rate 45\nsize 64 64\nframes none\nvisibility-mask on\n");
-        // Frames may be late, and the scene must have been seen in thirty of them.
-        acts.wait(4.0)
-            .point(placeOfScene("Next scene", (work.path / "scenes").string()))
-            .wait(0.25)
-            .press("right trigger", 0.3)
-            .wait(2.0);
-        const ViewRun run = runView(work, "goes", acts.script(),
-                                    "scenes/slanted-wall.ply --load-first --hide-hands --mode " + mode +
-                                        withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
-                                    kWatched + " SIMULATED_OPENXR_CLOCK=real");
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-        checkOrder(run, {"shows scenes/slanted-wall.ply", "shows scenes/one-splat.ply"});
-        CHECK_FALSE(run.says("frames shown incomplete"));
-        checkQuiet(work, 20);
+        const ViewRun run = runScenes(work, acts.wait(1.0), mode);
+        const std::string first = (scenes / kFirst).string(), next = (scenes / kOther).string();
+        checkOrder(run, {"shows scenes/" + kFirst, (scenes / kBroken).string() + ":", "shows " + next,
+                         "shows " + first});
+        checkAlwaysShown(run);
+        const fs::path kept = work.base / "config" / "binosplat";
+        CHECK(textIn(kept / "recent-scenes.txt").starts_with(first + "\n" + next + "\n"));
+        CHECK_FALSE(contains(textIn(kept / "recent-scenes.txt"), kBroken));
         std::size_t pictures = 0;
-        for (const auto& file :
-             std::filesystem::recursive_directory_iterator(work.base / "config" / "binosplat")) {
+        for (const auto& file : fs::recursive_directory_iterator(kept)) {
             pictures += file.path().extension() == ".png" ? 1 : 0;
         }
         CHECK(pictures > 0);
-    }
+    });
 }
 
-TEST_CASE("a scene to compare with comes, and goes, without a wait") {
-    const Workplace work;
-    std::filesystem::create_directory(work.path / "scenes");
-    for (const char* const scene : {"slanted-wall", "one-splat"}) {
-        REQUIRE(work.run(fmt::format("scene {0} --out scenes/{0}.ply", scene)).exit_code == 0);
-    }
-    const std::string folder = (work.path / "scenes").string();
-    Acts acts("rate 45\nsize 64 64\nframes none\n");
+TEST_CASE_FIXTURE(AtWork, "the scene chosen next is compared with, and goes, without a wait") {
+    const fs::path scenes = makeScenes(work);
+    const std::string other = (scenes / kOther).string(), compare = "Compare", show = "Other";
+    Acts acts(kBlind);
     acts.wait(2.0);
-    for (const char* const widget : {"Compare", "one-splat.ply"}) {
-        acts.point(placeOfScene(widget, folder)).wait(0.25).press("right trigger", 0.3);
+    for (const std::string& widget : {compare, kBroken, compare, kOther, show, show, compare}) {
+        clickSlowly(acts, placeOfScene(widget, scenes.string()));
+        acts.wait(widget == kOther ? 2.0 : 0.5);
     }
-    acts.wait(2.0).hold("right a", 0.5).wait(1.0);
-    acts.point(placeOfScene("Compare", folder)).wait(0.25).press("right trigger", 0.3).wait(0.5);
-    const ViewRun run = runView(work, "with", acts.script(),
-                                "scenes/slanted-wall.ply --load-first --hide-hands --mode temporal" +
-                                    withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
-                                kWatched + " SIMULATED_OPENXR_CLOCK=real");
-    INFO(run.outcome.output << run.outcome.errors);
-    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-    checkOrder(run, {"to compare with", "compares scenes/slanted-wall.ply with", "shows " + folder,
-                     "shows scenes/slanted-wall.ply", "is no longer compared with"});
-    checkQuiet(work, 20);
+    const ViewRun run = runScenes(work, acts, "temporal");
+    checkOrder(run, {"to compare with scenes/" + kFirst, kBroken + ":", "to compare with scenes/" + kFirst,
+                     "compares scenes/" + kFirst + " with " + other, "shows " + other,
+                     "shows scenes/" + kFirst, other + " is no longer compared with"});
 }
 
 TEST_CASE("lists that are too short for what comes into view grow without a wait, and a few frames lack it") {
-    for (const std::string mode : {"temporal", "shared"}) {
-        CAPTURE(mode);
-        const Workplace work;
-        REQUIRE(work.run("scene atelier --splats 80000 --out many.ply").exit_code == 0);
+    eachMode({"temporal", "shared"}, [](const Workplace& work, const std::string& mode) {
+        work.go("scene atelier --splats 80000 --out many.ply");
         // From afar, where all of them are in a few tiles; first the other way.
-        const std::string script =
-            "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 1.5 position 0 1.6 0\n"
-            "head 1.51 position 0 1.6 0 turn 180 0\nat 2.4 exit\n";
-        const ViewRun run = runView(
-            work, "fill", script,
+        const ViewRun run = runWatched(
+            work, kStill + "head 1.5 position 0 1.6 0\nhead 1.51 position 0 1.6 0 turn 180 0\nat 2.4 exit\n",
             "many.ply --load-first --hide-hands --hide-panel --eye 0,0,-30 --look 0,0,-60 --up 0,-1,0 "
             "--mode " +
-                mode,
-            kWatched);
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+                mode);
         const std::vector<std::string> incomplete = run.lines("frames shown incomplete because a list was ");
         REQUIRE_FALSE(incomplete.empty());
         // Not to the end.
-        const auto frameOf = [](const std::string& line) {
-            return std::stoul(line.substr(line.find_first_of("0123456789")));
-        };
-        CHECK(frameOf(incomplete.back()) + 20 < run.frames.size());
+        const std::string last = incomplete.back();
+        CHECK(std::stoul(last.substr(last.find_first_of("0123456789"))) + 20 < run.frames.size());
         checkQuiet(work);
-    }
+    });
 }
 
-TEST_CASE("a scene that moves, or whose parts come and go, is shown without a wait") {
-    const Workplace work;
-    std::vector<std::string> scenes{"slide --scene-rate 15"};
-    writeSliding((work.path / "slide").string(), 12, 2000);
-#ifdef BINOSPLAT_SOG
-    splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
-               {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
-    scenes.emplace_back("split --splat-budget 9000");
-#endif
-    for (const std::string& scene : scenes) {
-        for (const std::string mode : {"temporal", "shared"}) {
-            CAPTURE(scene);
-            CAPTURE(mode);
-            const ViewRun run = runView(
-                work, "parts",
-                "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 1.5 position 0 1.6 0\n"
-                "head 2 position 0 1.6 0 turn 90 0\nat 4 exit\n",
-                scene + " --load-first --hide-hands --mode " + mode, kWatched);
-            INFO(run.outcome.output << run.outcome.errors);
-            CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-            checkQuiet(work);
-        }
-    }
+const std::string kTurnsAway =
+    "rate 45\nsize 64 64\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1.5 position 0 1.6 0\n"
+    "head 2 position 0 1.6 0 turn 90 0\nat 4 exit\n";
+
+TEST_CASE("a scene that moves is shown without a wait") {
+    eachMode({"temporal", "shared"}, [](const Workplace& work, const std::string& mode) {
+        writeSliding((work.path / "slide").string(), 12, 2000);
+        runQuiet(work, kTurnsAway, "slide --scene-rate 15 --load-first --mode " + mode);
+    });
 }
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("a streamed scene is there at once, becomes finer without a wait, and says what is missing") {
+    eachMode({"temporal", "shared"}, [](const Workplace& work, const std::string& mode) {
+        splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
+                   {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
+        fs::remove(work.path / "split" / "0_2.sog");
+        const ViewRun run =
+            runQuiet(work, kTurnsAway, "split --splat-budget 9000 --load-first --hide-panel --mode " + mode,
+                     kRealClock, 20);
+        checkOrder(run, {"shows split", "everything in view is loaded: "});
+        CHECK(run.says("16 levels of leaves, 0.0"));
+        CHECK(run.says(" s; frames that waited for it: 0"));
+        CHECK(run.says("0_2.sog is not there, expected a chunk of the scene; what is there stays"));
+        checkAlwaysShown(run);
+        const Image third = run.eye(2, kLeft);
+        const auto [least, most] = std::ranges::minmax(third.values);
+        CHECK(most - least > 0.2f);
+    });
+}
+#endif
 
 #ifdef BINOSPLAT_WEB_TESTS
 TEST_CASE("while there is no scene frames wait for nothing, nor does the first that shows one") {
-    for (const std::string mode : {"temporal", "predicted", "shared"}) {
-        CAPTURE(mode);
-        const Workplace work;
-        REQUIRE(work.run("scene slanted-wall --out wall.ply").exit_code == 0);
+    eachMode(kThreeModes, [](const Workplace& work, const std::string& mode) {
+        work.go("scene slanted-wall --out wall.ply");
         // The scene comes once two seconds of frames were shown.
         std::atomic<bool> is_over = false;
         WebServer server([&, bytes = work.bytesOf("wall.ply")](const WebRequest&) {
@@ -248,19 +234,12 @@ TEST_CASE("while there is no scene frames wait for nothing, nor does the first t
             }
             return answer("200 OK", "ETag: \"1\"\r\n", bytes);
         });
-        const std::string script = "rate 45\nsize 64 64\nframes none\nvisibility-mask on\n";
         const ViewRun run =
-            runView(work, "late", script, server.at("/wall.ply") + " --hide-hands --frames 60 --mode " + mode,
-                    kWatched +
-                        " SIMULATED_OPENXR_CLOCK=real no_proxy=127.0.0.1 "
-                        "XDG_CACHE_HOME=\"$PWD/../caches\"");
+            runQuiet(work, kBlind + kMasked, server.at("/wall.ply") + " --frames 60 --mode " + mode,
+                     kRealClock + " no_proxy=127.0.0.1 XDG_CACHE_HOME=\"$PWD/../caches\"");
         is_over = true;
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
         CHECK(run.says("shows " + server.at("/wall.ply")));
-        CHECK_FALSE(run.says("frames shown incomplete"));
-        checkQuiet(work);
-    }
+    });
 }
 #endif
 
@@ -269,84 +248,51 @@ TEST_CASE("the governor's steps, to other resolutions and back, wait for nothing
     const std::string script =
         "rate 90\nsize 100 100\nframes none\nvisibility-mask on\nhead 0 position 0 1.6 0\n"
         "head 1 position 0 1.6 0\nhead 6 position 0.4 1.6 0.2 turn 40 0\nat 6 exit\n";
-    for (const std::string mode : {"temporal", "alternate", "predicted", "shared", "two-pass", "mono"}) {
-        for (const std::string axes : {"view", "stay"}) {
-            if (axes == "stay" && mode != "temporal") { continue; }
-            CAPTURE(mode);
-            CAPTURE(axes);
-            const Workplace work;
-            const ViewRun run =
-                runView(work, "steps", script,
-                        fmt::format("builtin:slanted-wall --load-first --hide-hands --axes {} --mode {}{}",
-                                    axes, mode, withConfig(work, "[view]\nquality = \"fast\"\n")),
-                        kWatched + " BINOSPLAT_FAULT_LOAD=0:9.7,110:14,130:33,200:4");
-            INFO(run.outcome.output << run.outcome.errors);
-            CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-            CHECK_FALSE(run.says("frames shown incomplete"));
-            int before = 0, downs = 0, ups = 0;
-            for (std::size_t frame = 90; frame < run.frames.size(); ++frame) {
-                // The last frames show nothing.
-                if (run.layers(frame, "projection").empty()) { continue; }
-                const int now = run.width(frame);
-                downs += before > 0 && now < before ? 1 : 0;
-                ups += before > 0 && now > before ? 1 : 0;
-                before = now;
-            }
-            CHECK(these(downs > 0, ups > 0) == these(true, true));
-            checkQuiet(work, 90);
-        }
-    }
+    eachMode({"temporal --axes stay", "temporal", "alternate", "predicted", "shared", "two-pass", "mono"},
+             [&](const Workplace& work, const std::string& mode) {
+                 const std::string axes = contains(mode, "--axes") ? "" : " --axes view";
+                 const ViewRun run = runQuiet(
+                     work, script, kWallIn + mode + axes + withConfig(work, "[view]\nquality = \"fast\"\n"),
+                     "BINOSPLAT_FAULT_LOAD=0:9.7,110:14,130:33,200:4", 90);
+                 const std::vector<int> widths = widthsOf(run, 90);
+                 CHECK(std::ranges::adjacent_find(widths, std::greater()) != widths.end());
+                 CHECK(std::ranges::adjacent_find(widths, std::less()) != widths.end());
+             });
 }
 
-TEST_CASE("another method is drawn once its frames are made, and no frame waits for them") {
-    const Workplace work;
-    Acts acts("rate 45\nsize 64 64\nframes none\nvisibility-mask on\n");
+TEST_CASE_FIXTURE(AtWork, "another method is drawn once its frames are made, and no frame waits for them") {
+    Acts acts(kBlind + kMasked);
     acts.wait(kMethodSeconds);
-    const std::vector<std::string> methods{"temporal", "alternate", "predicted",
-                                           "two-pass", "mono",      "shared"};
+    const Modes methods{"temporal", "alternate", "predicted", "two-pass", "mono", "shared"};
     for (const std::string& method : methods) {
-        acts.point(onMethod(method)).wait(0.25).press("right trigger", 0.3).wait(kMethodSeconds);
+        clickSlowly(acts, onMethod(method));
+        acts.wait(kMethodSeconds);
     }
-    const ViewRun run =
-        runView(work, "methods", acts.script(),
-                "builtin:slanted-wall --hide-hands --mode shared" + withConfig(work, kMethodPage),
-                kWatched + " SIMULATED_OPENXR_CLOCK=real");
-    INFO(run.outcome.output << run.outcome.errors);
-    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+    const ViewRun run = runQuiet(
+        work, acts, "builtin:slanted-wall --mode shared" + withConfig(work, kMethodPage), kRealClock);
     // On a busy machine some may be chosen before the one before is ready.
     CHECK(run.lines(" is ready").size() >= methods.size() / 2);
-    CHECK_FALSE(run.says("frames shown incomplete"));
-    checkQuiet(work);
 }
 
 TEST_CASE("the wearer's own resolution, and axes that stay or do not, come without a wait") {
-    const std::string alone = "--mode ", compared = "--compare builtin:fence --mode ";
-    for (const std::string& mode :
-         {alone + "temporal", alone + "predicted", alone + "shared", compared + "temporal"}) {
-        CAPTURE(mode);
-        const Workplace work;
-        Acts acts("rate 45\nsize 100 100\nframes none\nvisibility-mask on\n");
-        acts.wait(kMethodSeconds);
-        for (const char* const widget : {"resolution", "Axes stay", "Axes stay"}) {
-            acts.point(onMethod(widget)).wait(0.25).press("right trigger", 0.3).wait(kMethodSeconds);
-            if (mode.starts_with(compared)) { acts.hold("right a", 0.5).wait(0.5); }
-        }
-        const ViewRun run = runView(work, "resolution", acts.script(),
-                                    "builtin:slanted-wall --hide-hands --axes view " + mode +
-                                        withConfig(work, kMethodPage + "resolution-scale = 0.5\n"),
-                                    kWatched + " SIMULATED_OPENXR_CLOCK=real");
-        INFO(run.outcome.output << run.outcome.errors);
-        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-        CHECK_FALSE(run.says("frames shown incomplete"));
-        std::set<int> widths;
-        for (std::size_t frame = 30; frame < run.frames.size(); ++frame) {
-            if (run.layers(frame, "projection").empty()) { continue; }
-            widths.insert(run.view(frame).at("rect").at(2).get<int>());
-        }
-        // Small, large, and large with room around; the governor may choose others.
-        CHECK(widths.size() > 2);
-        checkQuiet(work);
-    }
+    const std::string compared = "temporal --compare builtin:fence";
+    eachMode({"temporal", "predicted", "shared", compared},
+             [&](const Workplace& work, const std::string& mode) {
+                 Acts acts("rate 45\nsize 100 100\nframes none\n" + kMasked);
+                 acts.wait(kMethodSeconds);
+                 for (const char* const widget : {"resolution", "Axes stay", "Axes stay"}) {
+                     clickSlowly(acts, onMethod(widget));
+                     acts.wait(kMethodSeconds);
+                     if (mode == compared) { acts.hold("right a", 0.5).wait(0.5); }
+                 }
+                 const ViewRun run = runQuiet(work, acts,
+                                              "builtin:slanted-wall --axes view --mode " + mode +
+                                                  withConfig(work, kMethodPage + "resolution-scale = 0.5\n"),
+                                              kRealClock);
+                 const std::vector<int> all = widthsOf(run, 30);
+                 // Small, large, and large with room around; the governor may choose others.
+                 CHECK(std::set<int>(all.begin(), all.end()).size() > 2);
+             });
 }
 
 TEST_CASE("frames of another resolution are made ahead even where a limit makes their images as large") {
@@ -359,24 +305,10 @@ TEST_CASE("frames of another resolution are made ahead even where a limit makes 
     CHECK(FramesAhead{}.hasFramesOf(larger));
 }
 
-TEST_CASE("new letters come without a wait") {
-    const Workplace work;
-    REQUIRE(work.run("scene one-splat --out '\u05d7\u05d3\u05e8.ply'").exit_code == 0);
-    const std::string script = "rate 45\nsize 64 64\nframes none\nat 4 exit\n";
-    const ViewRun run = runView(work, "letters", script, "'\u05d7\u05d3\u05e8.ply' --load-first",
-                                kWatched + " SIMULATED_OPENXR_CLOCK=real");
-    INFO(run.outcome.output << run.outcome.errors);
-    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
-    checkQuiet(work, 20);
-}
-
-TEST_CASE("what is drawn is where the eyes are by the last that the runtime said") {
-    const Workplace work;
-    const std::string script = "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nat 1 exit\n";
+TEST_CASE_FIXTURE(AtWork, "what is drawn is where the eyes are by the last that the runtime said") {
     const ViewRun run =
-        runView(work, "late", script, "builtin:one-splat --load-first --mode predicted --axes view",
-                kWatched + " BINOSPLAT_XR_EARLY=0.01");
-    INFO(run.outcome.output << run.outcome.errors);
+        runWatched(work, kStill + "at 1 exit\n",
+                   "builtin:one-splat --load-first --mode predicted --axes view", "BINOSPLAT_XR_EARLY=0.01");
     REQUIRE(run.frames.size() > 10);
     const std::size_t frame = run.frames.size() / 2;
     const nlohmann::json layer = run.layers(frame, "projection").at(0);
