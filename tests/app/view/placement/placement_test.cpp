@@ -7,6 +7,7 @@
 #include "app/view/settings/preferences.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/settings/view_settings.h"
+#include "tests/app/camera_file.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
 #include "xr/convert.h"
@@ -95,8 +96,8 @@ TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or thei
     checkNear(startWith("--eye 1,2,3 --look 1,2.001,8 --up 0,0,-1").orientation * glm::dvec3(0, -1, 0),
               {0, 0, -1}, 1e-6);
     // A camera that looks about 37 degrees down, along (0, 0.6, 0.8), keeps its own up.
-    work.write("c.json", R"([{"position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]],
-                              "width": 8, "height": 8, "fx": 9, "fy": 9}])");
+    work.write("c.json",
+               "[" + cameraJson("a", {1, 2, 3}, "[[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]]") + "]");
     const Similarity at_camera = startWith("--cameras " + cameras);
     checkNear(at_camera.position, {1, 2, 3}, 1e-12);
     checkNear(at_camera.orientation * glm::dvec3(0, -1, 0), {0, -0.8, 0.6}, 1e-6);
@@ -172,16 +173,13 @@ TEST_CASE("sessions lost one after the other are too many after three, those now
 }
 
 TEST_CASE_FIXTURE(Home, "what somebody sets on the panel is kept, key by key, and is there the next time") {
-    const auto parse = [](std::vector<const char*> words) {
-        words.insert(words.begin(), {"binosplat", "view", "builtin:fence"});
-        return std::get<ViewOptions>(parseOptions(static_cast<int>(words.size()), words.data()));
-    };
-    const auto settingsOf = [](const ViewOptions& options) {
+    const auto settingsOf = [](const std::string& words) {
+        const auto options = parse<ViewOptions>("view builtin:fence " + words);
         ViewSettings settings;
         settings.stereo = options.run.stereo;
         return readViewSettings(options.tables, settings);
     };
-    ViewSettings now = settingsOf(parse({}));
+    ViewSettings now = settingsOf("");
     const ViewSettings begin = now;
     Preferences preferences;
     preferences.note(now, 0.1);
@@ -197,18 +195,18 @@ TEST_CASE_FIXTURE(Home, "what somebody sets on the panel is kept, key by key, an
     CHECK(changes == PreferenceLines{{{"stereo", "mode"}, "\"shared\""}, {{"view", "quality"}, "\"fast\""}});
     keepPreferences(changes);
     keepPreferences({{{"view", "vignette"}, "false"}});
-    const ViewSettings next = settingsOf(parse({}));
+    const ViewSettings next = settingsOf("");
     CHECK(describeChange(begin, next) == "mode = \"shared\", vignette = false, quality = \"fast\"");
     // The command line and a config override preferences, and the simulated headset ignores them.
-    CHECK(settingsOf(parse({"--mode", "mono"})).stereo.mode == Mode::kMono);
+    CHECK(settingsOf("--mode mono").stereo.mode == Mode::kMono);
     write("own.toml", "[view]\nquality = \"sharp\"\n");
-    CHECK(settingsOf(parse({"--config", at("own.toml").c_str()})).quality == Quality::kSharp);
-    CHECK(describeChange(begin, settingsOf(parse({"--simulate"}))) == "");
+    CHECK(settingsOf("--config " + at("own.toml")).quality == Quality::kSharp);
+    CHECK(describeChange(begin, settingsOf("--simulate")) == "");
     // A broken file does not prevent the start, and is put aside.
     std::ofstream(preferencesFile()) << "[view]\nnonsense = 1\n";
-    CHECK(describeChange(begin, settingsOf(parse({}))) == "");
+    CHECK(describeChange(begin, settingsOf("")) == "");
     keepPreferences({{{"view", "vignette"}, "false"}});
-    CHECK(describeChange(begin, settingsOf(parse({}))) == "vignette = false");
+    CHECK(describeChange(begin, settingsOf("")) == "vignette = false");
     CHECK(fs::file_size(preferencesFile().string() + ".unread") == 20);
 }
 
@@ -224,26 +222,7 @@ TEST_CASE("a ruler has two ends, and is put away with the second") {
     CHECK(these(ruler.isOpen(), ruler.units()) == these(false, 5.0));
 }
 
-TEST_CASE_FIXTURE(Home, "of a scene only its place and its measure are kept") {
-    ViewSettings settings;
-    settings.scene_from_room = kSome;
-    settings.metres_per_unit = 0.25;
-    settings.stereo.mode = Mode::kPaper;
-    CHECK(saveViewSettings("builtin:fence", settings).starts_with("saved as "));
-    const RememberedPlace there = rememberedPlace("builtin:fence");
-    REQUIRE(there.scene_from_room.has_value());
-    checkNear(there.scene_from_room->position, kSome.position);
-    CHECK(there.metres_per_unit == 0.25);
-    ViewSettings loaded;
-    CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
-    CHECK(describeChange({}, loaded) == "");
-    // A file that an older program saved is taken as a whole.
-    std::ofstream(viewSettingsFile("builtin:fence")) << viewSettingsToml(settings);
-    CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
-    CHECK(loaded.stereo.mode == Mode::kPaper);
-}
-
-TEST_CASE_FIXTURE(AtWork, "what the panel is set to survives its file") {
+TEST_CASE_FIXTURE(Home, "of a scene only its place and its measure are kept; an older file is taken whole") {
     ViewSettings settings;
     settings.stereo.mode = Mode::kPaper;
     settings.stereo.dominant = kRight;
@@ -252,30 +231,30 @@ TEST_CASE_FIXTURE(AtWork, "what the panel is set to survives its file") {
     settings.stereo.warp.budget = 0.25;
     settings.stereo.warp.depth_choice = gpu::kDepthMean;
     settings.resolution_scale = 0.7;
-    settings.tint = true;
-    settings.panel = false;
-    settings.hands = settings.vignette = false;
-    settings.teleport = settings.passthrough = true;
+    settings.tint = settings.teleport = settings.passthrough = true;
+    settings.panel = settings.hands = settings.vignette = false;
     settings.scene_from_room = kSome;
-    work.write("kept.toml", viewSettingsToml(settings));
-    std::vector<SettingsTable> view;
-    Settings stereo;
-    for (const SettingsTable& table : readSettingsFile(work.path / "kept.toml")) {
-        if (table.name == "view") { view.push_back(table); }
-        if (table.name == "stereo") { stereo = table.settings; }
-    }
-    ViewSettings read = readViewSettings(view, {});
-    read.stereo = runOptions(stereo).stereo;
-    CHECK(describeChange(settings, read) == "");
+    settings.metres_per_unit = 0.25;
+    CHECK(saveViewSettings("builtin:fence", settings).starts_with("saved as "));
+    const RememberedPlace there = rememberedPlace("builtin:fence");
+    REQUIRE(there.scene_from_room.has_value());
+    checkNear(there.scene_from_room->position, kSome.position);
+    CHECK(these(there.scene_from_room->scale, there.metres_per_unit) == these(kSome.scale, 0.25));
+    CHECK(glm::length(there.scene_from_room->orientation - kSome.orientation) < 1e-12);
+    const auto load = [] {
+        ViewSettings loaded;
+        CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
+        return loaded;
+    };
+    CHECK(describeChange({}, load()) == "");
+    std::ofstream(viewSettingsFile("builtin:fence")) << viewSettingsToml(settings);
+    ViewSettings loaded = load();
+    CHECK(describeChange(settings, loaded) == "");
     // In nearly every frame nothing has changed; no text is written to find that out.
     CHECK(settings == ViewSettings(settings));
-    REQUIRE(read.scene_from_room.has_value());
-    checkNear(read.scene_from_room->position, kSome.position);
-    CHECK(read.scene_from_room->scale == kSome.scale);
-    CHECK(glm::length(read.scene_from_room->orientation - kSome.orientation) < 1e-12);
-    read.stereo.warp.margin_px = 16;
-    CHECK_FALSE(settings == read);
-    CHECK(describeChange(settings, read) == "margin = 16");
+    loaded.stereo.warp.margin_px = 16;
+    CHECK_FALSE(settings == loaded);
+    CHECK(describeChange(settings, loaded) == "margin = 16");
 }
 
 TEST_CASE("a config that places the scene in part or wrongly, and an unknown key, are refused") {

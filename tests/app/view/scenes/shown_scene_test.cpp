@@ -10,10 +10,6 @@
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
 
-#ifdef BINOSPLAT_SOG
-#include "tests/engine/files/sog_scenes.h"
-#endif
-
 #include <sys/stat.h>
 
 SUITE(shown_scene) {
@@ -58,21 +54,6 @@ TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was s
     }
     CHECK_FALSE(scenes.loading().has_value());
 }
-
-#ifdef BINOSPLAT_SOG
-TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or without a slash at its end") {
-    fs::create_directory(path / "statue");
-    for (const auto& [name, bytes] : makeSog()) { write("statue/" + name, bytes); }
-    ShownScene scenes(context(), options, log);
-    REQUIRE(scenes.take(state).empty());
-    for (const std::string& place : {at("statue"), at("statue") + "/", at("statue/meta.json")}) {
-        CAPTURE(place);
-        show(scenes, place);
-        CHECK(these(scenes.name(), scenes.get()->facts.splats) == these(place, 8));
-        CHECK(scenes.get()->facts.file_bytes > 0);
-    }
-}
-#endif
 
 TEST_CASE_FIXTURE(Shown, "the last scene asked for comes; if it cannot be read, the one before does") {
     ShownScene scenes(context(), options, log);
