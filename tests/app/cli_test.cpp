@@ -56,12 +56,6 @@ TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
     CHECK_FALSE(fs::exists(work.path / "both" / ("left" + display_extension)));
 }
 
-TEST_CASE("the program knows nothing of the folder of its sources") {
-    const std::string program = textIn(BINOSPLAT_PROGRAM);
-    REQUIRE(program.size() > 1'000'000);
-    CHECK_FALSE(contains(program, (kSource / "shaders").string()));
-}
-
 TEST_CASE_FIXTURE(AtWork, "every kernel, in each variant of every shader, is built and listed" * nightly()) {
     work.go("kernels --out k");
     const auto listed = nlohmann::json::parse(work.bytesOf("k/kernels.json"));

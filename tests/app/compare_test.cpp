@@ -6,8 +6,8 @@
 
 SUITE(compare) {
 
-// Two pictures of waves, one with a value that is not a number, one of another size, one with a single
-// channel, and weights for LPIPS.
+// Two paths, two pictures of waves, one with a value that is not a number, one of another size, one with a
+// single channel, and weights for LPIPS.
 struct Pictures : Workplace {
     Pictures() {
         writePfm(path / "a.pfm", makeWaves({40, 30}, 0.0));
@@ -21,6 +21,18 @@ struct Pictures : Workplace {
         writePnm(path / "a.ppm", makeFlat({20, 20}, glm::vec3(0.2f, 0.4f, 0.6f)));
         writePfm(path / "a_as_floats.pfm", readPnm(path / "a.ppm"));
         writeFloats(path / "w.bin", makeLpipsWeights(7));
+        // Two paths of three frames, of which one is off by 0.2: the changes are 0.3 and -0.1 instead of 0.1
+        // twice.
+        for (const auto& [folder, greys] : {std::pair("still", std::array{0.5f, 0.6f, 0.7f}),
+                                            std::pair("flickers", std::array{0.5f, 0.8f, 0.7f})}) {
+            fs::create_directory(path / folder);
+            for (std::size_t frame = 0; frame < 3; ++frame) {
+                for (const char* eye : {"left", "right"}) {
+                    writePfm(path / folder / fmt::format("frame_00000{}_{}.pfm", frame, eye),
+                             makeGrey({20, 20}, 3, greys[frame]));
+                }
+            }
+        }
     }
 
     // In the order of the output.
@@ -54,35 +66,6 @@ TEST_CASE_FIXTURE(Pictures, "each score is a line with its name, and FLIP sees l
 SCRIPT(compare, "app/compare") {
     const Pictures pictures;
     runScript(programIn(pictures));
-}
-
-TEST_CASE("of two paths come the mean, the worst frame, and how much more one changes than the other") {
-    const Pictures pictures;
-    for (const char* folder : {"still", "flickers", "empty", "short"}) {
-        fs::create_directory(pictures.path / folder);
-    }
-    const auto write = [&](const std::string& name, float grey) {
-        writePfm(pictures.path / (name + ".pfm"), makeFlat({20, 20}, glm::vec3(grey)));
-    };
-    for (const char* eye : {"left", "right"}) {
-        for (int frame = 0; frame < 3; ++frame) {
-            const std::string name = fmt::format("/frame_00000{}_{}", frame, eye);
-            write("still" + name, 0.5f + 0.1f * static_cast<float>(frame));
-            write("flickers" + name, frame == 1 ? 0.8f : 0.5f + 0.1f * static_cast<float>(frame));
-        }
-    }
-    // One frame of three is off by 0.2, so the changes are 0.3 and -0.1 instead of 0.1 twice.
-    const auto scores = pictures.scores("flickers still");
-    REQUIRE(scores.size() == 4);
-    CHECK(scores[0] == std::pair(std::string("pictures"), 6.0));
-    CHECK(scores[1].second == doctest::Approx(-10.0 * std::log10(0.04 / 3.0)));
-    CHECK(scores[2].second == doctest::Approx(-10.0 * std::log10(0.04)));
-    CHECK(scores[3].second == doctest::Approx(std::sqrt(5.0)));
-    CHECK(pictures.go("compare still still").output ==
-          "pictures 6\npsnr inf\npsnr_least inf\nchange 1.000000\n");
-    write("short/frame_000000_left", 0.5f);
-    pictures.checkRefused("compare still short", 1, "short/frame_000001_left.pfm: cannot be read");
-    pictures.checkRefused("compare empty still", 1, "empty: has no frames of a path");
 }
 
 }  // SUITE(compare)

@@ -8,13 +8,6 @@
 
 SUITE(fault) {
 
-// Makes the Nth call fail, or raises a signal with it.
-std::string fault(const std::string& call, int number, const std::string& what) {
-    return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                       "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT={}:{}:{}",
-                       call, number, what);
-}
-
 struct Machine : Workplace {
     Machine() {
         write("one.toml", "[bench]\nmodes = [\"shared\"]\nscores = [\"psnr\"]\nwarm-up = 1\nrepeats = 2\n");
@@ -115,9 +108,8 @@ TEST_CASE_FIXTURE(Machine,
         INFO("stdout: " << outcome.output << " stderr: " << outcome.errors);
         CHECK(outcome.exit_code == exit_code);
         CHECK(outcome.errors.find(part) != std::string::npos);
-        std::istringstream lines(outcome.errors);
         std::size_t own = 0;
-        for (std::string line; std::getline(lines, line);) {
+        for (const std::string& line : linesIn(outcome.errors)) {
             const bool is_own = line.starts_with("binosplat: ");
             CHECK((is_own || line.starts_with("simulated runtime: ")));
             own += is_own;

@@ -8,15 +8,13 @@
 namespace binosplat::test {
 
 // Makes the Nth call of a kind fail, or raises a signal with it (tests/faults).
+inline const std::string kFault = "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                  "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=";
 inline std::string fault(const std::string& call, int number, const std::string& what) {
-    return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                       "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT={}:{}:{}",
-                       call, number, what);
+    return fmt::format("{}{}:{}:{}", kFault, call, number, what);
 }
 
 inline ScriptHost programIn(const Workplace& work) {
-    const std::string layer = "VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                              "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=";
     const std::string no_driver =
         "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
     ScriptHost host{[&](const std::string& words, const std::string& environment) {
@@ -25,11 +23,12 @@ inline ScriptHost programIn(const Workplace& work) {
                     work.path,
                     "binosplat: ",
                     {{"SOURCE", BINOSPLAT_SOURCE_DIR},
+                     {"PROGRAM", BINOSPLAT_PROGRAM},
                      {"WORK", work.path.string()},
                      {"BASE", work.base.string()},
                      {"DISPLAYED", extensionOf(PictureKind::kDisplay)},
                      {"FLOAT", BINOSPLAT_FLOAT_EXTENSION},
-                     {"FAULT", layer},
+                     {"FAULT", kFault},
                      {"NO_DRIVER", no_driver}}};
 #ifdef BINOSPLAT_SOG
     host.features.insert("sog");
