@@ -26,7 +26,6 @@ public:
 
     // The size of the grid, in whole tiles.
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    [[nodiscard]] double pixelRad() const { return pixel_rad_; }
     // The direction to a place on the grid, in the axes of an eye.
     [[nodiscard]] glm::dvec3 directionAt(const glm::dvec2& place_px, int side) const;
     // The solid angle of a pixel of the grid, which is smaller farther out, where a circle around the middle

@@ -4,9 +4,9 @@
 #include "app/options/camera_options.h"
 #include "engine/builtin/procedural.h"
 #include "engine/files/load_scene.h"
-#include "engine/files/ply.h"
 #include "engine/files/scene_folder.h"
 #include "engine/setup/output_files.h"
+#include "tests/app/camera_file.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
 
@@ -139,38 +139,43 @@ TEST_CASE_FIXTURE(AtWork, "cameras lie in a scene's folder, beside it, or where 
 }
 
 TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, along the mean up of all") {
-    const Scene scene = makeBox((work.path / "box.ply").string());
-    const auto camera = [](const char* name, const char* position, const char* rotation) {
-        return fmt::format(
-            R"({{"img_name": "{}", "position": {}, "rotation": {}, "width": 100, "height": 80, "fx": 80,)"
-            R"( "fy": 80}})",
-            name, position, rotation);
+    Scene scene = makeBox((work.path / "box.ply").string());
+    const auto camera = [&](const char* name, const glm::dvec3& at, const char* rotation) {
+        return cameraJson(name, scene.origin + at, rotation, {100, 80}, 80.0);
     };
-    // The first looks away; the others look along z, tilted by 0.2 to one side and to the other.
-    const std::string away = camera("away", "[0, 0, -9]", "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]"),
-                      right = camera("right", "[0, 0, -9]",
-                                     "[[0.98, -0.198997487, 0], [0.198997487, 0.98, 0], [0, 0, 1]]"),
-                      left = camera("left", "[1, 0, -9]",
-                                    "[[0.98, 0.198997487, 0], [-0.198997487, 0.98, 0], [0, 0, 1]]");
     const fs::path file = work.path / "cameras.json";
-    writeText(file, "[" + away + "," + right + "," + left + "]");
-    const StartView start = startView(scene);
-    CAPTURE(start.why);
-    CHECK(start.why.starts_with("at camera 1 (right) of "));
-    CHECK(these(start.up_why, start.view.eye) == these("the mean of all cameras'", glm::dvec3(0, 0, -9)));
-    CHECK(glm::distance(start.view.up, glm::dvec3(0, -1, 0)) < 1e-6);
-    CHECK(glm::distance(glm::normalize(start.view.look - start.view.eye), glm::dvec3(0, 0, 1)) < 1e-6);
-    CHECK(start.view.look.z == doctest::Approx(0.0));  // among the splats
-    // A given place or camera comes first.
-    const RunOptions placed = renderOptions("--eye 0,0,5");
-    CHECK(startView(scene, placed.camera, 1.0).eye == glm::dvec3(0, 0, 5));
-    CHECK(makeCameras(placed, {}, scene).view->up == start.view.up);
-    CHECK(startView(scene, renderOptions("--view 2 --cameras " + file.string()).camera, 1.0).eye ==
-          glm::dvec3(1, 0, -9));
-    // Cameras of another scene and broken ones are reported and ignored.
-    writeText(file, "[" + away + "]");
-    CHECK(startView(scene).why.ends_with("cameras.json sees the scene"));
-    CHECK(startView(scene).why.starts_with("outside"));
+    // At 0, and in the coordinates of a country, in which files and options are.
+    for (const glm::dvec3& origin : {glm::dvec3(500'000.0, -4'200'000.0, 0.0), glm::dvec3(0.0)}) {
+        scene.origin = origin;
+        // The first looks away; the others look along z, tilted by 0.2 to one side and to the other.
+        const std::string away = camera("away", {0, 0, -9}, "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]"),
+                          right = camera("right", {0, 0, -9},
+                                         "[[0.98, -0.198997487, 0], [0.198997487, 0.98, 0], [0, 0, 1]]"),
+                          left = camera("left", {1, 0, -9},
+                                        "[[0.98, 0.198997487, 0], [-0.198997487, 0.98, 0], [0, 0, 1]]");
+        writeText(file, "[" + away + "," + right + "," + left + "]");
+        const StartView start = startView(scene);
+        CAPTURE(start.why);
+        CHECK(start.why.starts_with("at camera 1 (right) of "));
+        CHECK(these(start.up_why, start.view.eye) == these("the mean of all cameras'", glm::dvec3(0, 0, -9)));
+        CHECK(glm::distance(start.view.up, glm::dvec3(0, -1, 0)) < 1e-6);
+        CHECK(glm::distance(glm::normalize(start.view.look - start.view.eye), glm::dvec3(0, 0, 1)) < 1e-6);
+        CHECK(start.view.look.z == doctest::Approx(0.0));  // among the splats
+        // A given place or camera comes first.
+        const RunOptions placed =
+            renderOptions(fmt::format("--eye {:.0f},{:.0f},{:.0f}", origin.x, origin.y, origin.z + 5.0));
+        CHECK(startView(scene, placed.camera, 1.0).eye == glm::dvec3(0, 0, 5));
+        const Cameras cameras = makeCameras(placed, {}, scene);
+        CHECK(these(cameras.middle.world_from_camera.position, cameras.view->up, cameras.view->eye,
+                    cameras.origin) ==
+              these(glm::dvec3(0, 0, 5), start.view.up, origin + glm::dvec3(0, 0, 5), origin));
+        CHECK(startView(scene, renderOptions("--view 2 --cameras " + file.string()).camera, 1.0).eye ==
+              glm::dvec3(1, 0, -9));
+        // Cameras of another scene and broken ones are reported and ignored.
+        writeText(file, "[" + away + "]");
+        CHECK(startView(scene).why.ends_with("cameras.json sees the scene"));
+        CHECK(startView(scene).why.starts_with("outside"));
+    }
     writeText(file, "[{}]");
     CHECK(contains(startView(scene).why, "not at a camera: " + file.string() + ": camera 0"));
     CHECK(startView(loadScene("builtin:fence")).why == "at the built-in scene's own view");
@@ -179,8 +184,8 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, a
     for (glm::vec3& p : ground.positions) { p = {p.x, p.z, -p.y}; }
     ground.rotations.assign(ground.size(), glm::quat(1, 0, 0, 0));
     ground.name = scene.name;
-    writeText(file, "[" + camera("there", "[0, 2, 8]", "[[1, 0, 0], [0, -1, 0], [0, 0, -1]]") + "," +
-                        camera("back", "[0, 3, 8]", "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]") + "]");
+    writeText(file, "[" + camera("there", {0, 2, 8}, "[[1, 0, 0], [0, -1, 0], [0, 0, -1]]") + "," +
+                        camera("back", {0, 3, 8}, "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]") + "]");
     const StartView above = startView(ground);
     CAPTURE(above.up_why);
     CHECK(above.up_why.starts_with("that of the floor beneath the cameras"));
@@ -276,48 +281,6 @@ TEST_CASE("the up of cameras that all look straight down is the ground's; before
     REQUIRE(before_wall);
     CHECK(glm::dot(before_wall->up, -x) > 0.999);
     CHECK_FALSE(upOfCameras({}, wall));
-}
-
-TEST_CASE_FIXTURE(AtWork, "a scene in the coordinates of a country is seen as the same one at 0") {
-    // The splats and a camera, moved by this much, in a folder of their own.
-    const auto place = [&](const std::string& name, const glm::dvec3& moved) {
-        fs::create_directory(work.path / name);
-        Scene scene = makeBuiltin("builtin:fence");
-        scene.origin = moved;
-        writePly(scene, (work.path / name / "scene.ply").string());
-        const glm::dvec3 at = moved + glm::dvec3(0.25, -0.5, -1.0);
-        writeText(
-            work.path / name / "cameras.json",
-            fmt::format(
-                R"([{{"img_name": "a", "position": [{:.3f}, {:.3f}, {:.3f}], "rotation": [[1, 0, 0], [0,)"
-                R"( 1, 0], [0, 0, 1]],)"
-                R"("width": 100, "height": 80, "fx": 80, "fy": 80}}])",
-                at.x, at.y, at.z));
-        return loadScene((work.path / name / "scene.ply").string());
-    };
-    const glm::dvec3 away(500'000.0, -4'200'000.0, 0.0);
-    const Scene home = place("home", glm::dvec3(0.0)), far = place("far", away);
-    REQUIRE(home.origin == glm::dvec3(0.0));
-    REQUIRE(glm::distance(far.origin, away) < 10.0);
-    const auto camerasOf = [](const Scene& scene) { return makeCameras(renderOptions(""), {}, scene); };
-    const auto fromSplat = [](const Scene& scene, const Cameras& cameras) {
-        return cameras.middle.world_from_camera.position - glm::dvec3(scene.positions.front());
-    };
-    const auto given = [&](const std::string& name) {
-        return "--view 0 --cameras " + (work.path / name / "cameras.json").string();
-    };
-    const Cameras usual = camerasOf(home), moved = camerasOf(far);
-    CHECK(glm::distance(fromSplat(far, moved), fromSplat(home, usual)) < 1e-5);
-    const glm::dquat turn = glm::conjugate(usual.middle.world_from_camera.orientation) *
-                            moved.middle.world_from_camera.orientation;
-    CHECK(std::abs(turn.w) > 1.0 - 1e-9);
-    CHECK(moved.origin == far.origin);
-    CHECK(glm::distance(moved.view.value().eye - away, usual.view.value().eye) < 1e-5);
-    // So is a wearer at a given camera.
-    const View at_home = startView(home, renderOptions(given("home")).camera, 1.0),
-               there = startView(far, renderOptions(given("far")).camera, 1.0);
-    CHECK(glm::distance(at_home.eye, glm::dvec3(0.25, -0.5, -1.0)) < 1e-9);
-    CHECK(glm::distance(there.eye + far.origin - away, at_home.eye) < 1e-5);
 }
 
 }  // SUITE(start_view)

@@ -70,27 +70,19 @@ float brighter(std::uint32_t x, std::uint32_t y) {
 TEST_CASE("every pixel of the lens's picture is as wide in angle as one in the middle of the flat picture") {
     const Lens lens;
     const double focal_px = wideEyes()[0].intrinsics.fx;
-    CHECK(lens.view.pixelRad() == doctest::Approx(1.0 / focal_px));
-    // 48 degrees on both sides, in whole tiles.
-    const double half_px = focal_px * glm::radians(48.0);
-    CHECK(lens.view.sizePx() == glm::uvec2(32 * static_cast<unsigned>(std::ceil(half_px / 16.0))));
     const glm::dvec2 middle_px = glm::dvec2(lens.view.sizePx()) / 2.0;
     for (const double angle_deg : {0.0, 10.0, 30.0, 47.0}) {
+        const double angle_rad = glm::radians(angle_deg);
         const glm::dvec3 there =
-            lens.view.directionAt(middle_px + glm::dvec2(glm::radians(angle_deg) * focal_px, 0.0), kLeft);
-        CHECK(glm::degrees(std::atan2(there.x, there.z)) == doctest::Approx(angle_deg));
-        CHECK(std::abs(there.y) < 1e-12);
+            lens.view.directionAt(middle_px + glm::dvec2(angle_rad * focal_px, 0.0), kLeft);
+        CHECK(glm::distance(there, {std::sin(angle_rad), 0.0, std::cos(angle_rad)}) < 1e-9);
         // The solid angle, from the directions of neighbouring pixels in radians.
-        const double across =
-            angle_deg > 0.0 ? std::sin(glm::radians(angle_deg)) / glm::radians(angle_deg) : 1.0;
-        CHECK(lens.view.solidAngleAt(middle_px + glm::dvec2(0.0, glm::radians(angle_deg) * focal_px)) ==
+        const double across = angle_deg > 0.0 ? std::sin(angle_rad) / angle_rad : 1.0;
+        CHECK(lens.view.solidAngleAt(middle_px + glm::dvec2(0.0, angle_rad * focal_px)) ==
               doctest::Approx(across / (focal_px * focal_px)));
     }
     // The corners of flat pictures lie beyond the lens's view; the grid's corners show nothing.
     CHECK(lens.view.tilesOf(kLeft).front() == LensView::kNowhere);
-    const std::size_t middle =
-        static_cast<std::size_t>(middle_px.y) * lens.view.sizePx().x + static_cast<std::size_t>(middle_px.x);
-    CHECK(lens.view.tilesOf(kLeft).at(middle) == 16 * 32 + 16);
 }
 
 TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of what it covers") {
@@ -138,32 +130,15 @@ TEST_CASE_FIXTURE(Lens, "of equal pictures nothing is seen, whatever lies beyond
     CHECK(worstTiles(none.tile_squares, 0.001) == 0.0);
 }
 
-TEST_CASE_FIXTURE(Lens, "an error in the middle counts through the lens as without one, at the border less") {
-    const Image full = draw(nowhere, shifted), middle = draw(inTheMiddle, shifted),
-                border = draw(atTheBorder, shifted);
-    const VisibleErrors flat_middle = findVisibleErrors({middle, middle}, {full, full}),
-                        flat_border = findVisibleErrors({border, border}, {full, full});
-    const VisibleErrors seen_middle = find(show(middle, middle), full),
-                        seen_border = find(show(border, border), full);
-    const auto badTiles = [](const VisibleErrors& errors) {
-        return errors.badShare() * static_cast<double>(errors.tile_squares.size());
-    };
-    CHECK(these(badTiles(flat_middle), badTiles(seen_middle)) ==
-          these(doctest::Approx(2 * 16), doctest::Approx(2 * 16)));
-    CHECK(worstTiles(seen_middle.tile_squares, 0.001) ==
-          doctest::Approx(worstTiles(flat_middle.tile_squares, 0.001)).epsilon(0.1));
-    CHECK(seen_middle.edge > 0.5 * flat_middle.edge);
-    CHECK(these(badTiles(flat_border), badTiles(seen_border)) == these(doctest::Approx(2 * 16), 0.0));
-    CHECK(seen_border.edge == 0.0);
-    CHECK(worstTiles(seen_border.tile_squares, 0.001) ==
-          between(0.0, 0.02 * worstTiles(flat_border.tile_squares, 0.001)));
+TEST_CASE_FIXTURE(Lens, "an edge that is off is seen in the middle, at the border not, nor what is faint") {
+    const Image full = draw(nowhere, shifted), middle = draw(inTheMiddle, shifted);
+    const auto seen = [&](const Image& picture) { return find(show(picture, picture), full); };
+    CHECK(seen(middle).edge > 0.5 * findVisibleErrors({middle, middle}, {full, full}).edge);
+    CHECK(seen(draw(atTheBorder, shifted)).edge == 0.0);
     // Less than a hundredth of this contrast is left there, so nobody notices it.
     const auto faint = [](std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + 0.02f; };
-    const auto worst = [&](const Image& picture) {
-        return worstTiles(find(show(picture, picture), full).tile_squares, 0.001);
-    };
-    CHECK(worst(draw(atTheBorder, faint)) == 0.0);
-    CHECK(worst(draw(inTheMiddle, faint)) > 1e-4);
+    CHECK(worstTiles(seen(draw(atTheBorder, faint)).tile_squares, 0.001) == 0.0);
+    CHECK(worstTiles(seen(draw(inTheMiddle, faint)).tile_squares, 0.001) > 1e-4);
 }
 
 TEST_CASE("steps between rendered tiles are seen where these meet through the lens, and less at the border") {

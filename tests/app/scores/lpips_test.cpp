@@ -3,32 +3,22 @@
 #include "engine/picture/image_io.h"
 #include "tests/app/scores/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
+#include "tests/run_program.h"
 #include "tests/shared_data.h"
-
-#include <unistd.h>
 
 SUITE(lpips) {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
                 kInfinity = std::numeric_limits<float>::infinity();
 
-// A file of weights that is deleted with the test.
-struct WeightsFile {
-    fs::path path = fs::temp_directory_path() / ("binosplat-lpips-" + std::to_string(getpid()) + ".bin");
-    explicit WeightsFile(const std::vector<float>& values) { writeFloats(path, values); }
-    WeightsFile(const WeightsFile&) = delete;
-    WeightsFile& operator=(const WeightsFile&) = delete;
-    ~WeightsFile() { fs::remove(path); }
+struct Weights : Workplace {
+    const fs::path file = path / "w.bin";
+    explicit Weights(const std::vector<float>& values) { writeFloats(file, values); }
 };
 
-const std::vector<float>& randomWeights() {
-    static const std::vector<float> values = makeLpipsWeights(2);
-    return values;
-}
-
-// Made once, from the random weights.
+// Made once, from random weights.
 const Lpips& randomLpips() {
-    static const Lpips lpips(WeightsFile(randomWeights()).path);
+    static const Lpips lpips(Weights(makeLpipsWeights(2)).file);
     return lpips;
 }
 
@@ -74,21 +64,11 @@ TEST_CASE("what a display shows alike is at distance zero, and a value that is n
     setPixel(waves, 16, 16, {0.5f, 0.5f, kNan});
     CHECK(lpips.measure(white, waves) == std::numeric_limits<double>::infinity());
     CHECK(lpips.measure(waves, waves) == std::numeric_limits<double>::infinity());
-}
-
-TEST_CASE("pictures that cannot be compared are refused") {
-    const auto measure = [&](glm::uvec2 size_a, glm::uvec2 size_b) {
-        return randomLpips().measure(makeFlat(size_a, glm::vec3(0.5f)), makeFlat(size_b, glm::vec3(0.4f)));
-    };
-    CHECK(measure({17, 17}, {17, 17}) > 0.0);
-    CHECK_THROWS_WITH_AS(measure({16, 40}, {16, 40}),
-                         "LPIPS: pictures have 16x40 pixels, must have at least 17 on each side", Error);
-    CHECK_THROWS_WITH_AS(measure({40, 16}, {40, 16}),
-                         "LPIPS: pictures have 40x16 pixels, must have at least 17 on each side", Error);
-    CHECK_THROWS_WITH_AS(measure({20, 20}, {20, 21}),
-                         "cannot compare a picture of 20x20 pixels with one of 20x21", Error);
-    for (const Image& bad : {makeGrey({20, 20}, 1, 0.5f), Image{}}) {
-        CHECK_THROWS_AS(static_cast<void>(randomLpips().measure(bad, bad)), Error);
+    // Pictures that cannot be compared.
+    for (const auto& [one, other] : {std::pair(makeGrey({16, 40}, 3, 0.5f), makeGrey({16, 40}, 3, 0.5f)),
+                                     {makeGrey({20, 20}, 3, 0.5f), makeGrey({20, 21}, 3, 0.5f)},
+                                     {makeGrey({20, 20}, 1, 0.5f), makeGrey({20, 20}, 1, 0.5f)}}) {
+        CHECK_THROWS_AS(static_cast<void>(lpips.measure(one, other)), Error);
     }
 }
 
@@ -108,15 +88,16 @@ TEST_CASE("broken weights are refused in one line, and so are those that overflo
          "value 724735 is inf, must be finite"},
         {[](std::vector<float>& values) { values[kNetworkWeights] = -0.5f; },
          "value 722496 is -0.5, must not be negative, as it belongs to a head"}};
+    const std::vector<float> good = makeLpipsWeights(2);
     for (const auto& [change, message] : changes) {
-        std::vector<float> values = randomWeights();
+        std::vector<float> values = good;
         change(values);
-        const WeightsFile file(values);
-        CHECK(errorOf(file.path) == file.path.string() + ": " + message);
+        const Weights weights(values);
+        CHECK(errorOf(weights.file) == weights.file.string() + ": " + message);
     }
-    const WeightsFile file(std::vector<float>(kNetworkWeights + kHeadWeights, 1e30f));
+    const Weights weights(std::vector<float>(kNetworkWeights + kHeadWeights, 1e30f));
     CHECK_THROWS_AS(
-        static_cast<void>(Lpips(file.path).measure(makeWaves({17, 17}, 0.0), makeWaves({17, 17}, 1.0))),
+        static_cast<void>(Lpips(weights.file).measure(makeWaves({17, 17}, 0.0), makeWaves({17, 17}, 1.0))),
         Error);
 }
 
