@@ -96,8 +96,8 @@ TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or thei
     checkNear(startWith("--eye 1,2,3 --look 1,2.001,8 --up 0,0,-1").orientation * glm::dvec3(0, -1, 0),
               {0, 0, -1}, 1e-6);
     // A camera that looks about 37 degrees down, along (0, 0.6, 0.8), keeps its own up.
-    work.write("c.json",
-               "[" + cameraJson("a", {1, 2, 3}, "[[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]]") + "]");
+    const std::string camera = cameraJson("a", {1, 2, 3}, "[[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]]");
+    work.write("c.json", fmt::format("[{}]", camera));
     const Similarity at_camera = startWith("--cameras " + cameras);
     checkNear(at_camera.position, {1, 2, 3}, 1e-12);
     checkNear(at_camera.orientation * glm::dvec3(0, -1, 0), {0, -0.8, 0.6}, 1e-6);
