@@ -103,15 +103,15 @@ struct PanelRequests {
          fill_screen = false, help = false, tour = false, rename_viewpoint = false, forget_viewpoint = false,
          share_viewpoints = false, read_viewpoints = false, measure = false, compare = false,
          show_other = false;
-    double growth = 1.0;               // of the scene, around the wearer's feet
-    double rise_m = 0.0;               // of the wearer
-    int scene_step = 0;                // to the previous or next scene
-    int viewpoint_step = 0;            // to the previous or next viewpoint
-    int viewpoint_move = 0;            // of the current one, in the list
-    int frame_step = 0;                // of a scene that moves
+    double growth = 1.0;                          // of the scene, around the wearer's feet
+    double rise_m = 0.0;                          // of the wearer
+    int scene_step = 0;                           // to the previous or next scene
+    int viewpoint_step = 0;                       // to the previous or next viewpoint
+    int viewpoint_move = 0;                       // of the current one, in the list
+    int frame_step = 0;                           // of a scene that moves
     std::optional<std::size_t> frame, viewpoint;  // to go to
-    std::string chosen_scene;          // empty: none
-    std::string favourite;             // a scene to mark as favourite, or to unmark; empty: none
+    std::string chosen_scene;                     // empty: none
+    std::string favourite;                        // a scene to mark as favourite, or to unmark; empty: none
     // The text that was entered.
     std::optional<std::pair<TextEntry::What, std::string>> entered;
     WidgetPlaces places;    // of what was drawn
