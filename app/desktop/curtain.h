@@ -29,9 +29,11 @@ public:
     [[nodiscard]] bool staysAway() const { return stays_away_; }
     // Once per turn; true if that takes it away, or brings it back.
     bool hold(bool is_held);
-    // Handles mouse events outside the panel; true if one is meant for the line.
+    // Handles mouse events outside the panel, and there while it is dragged; true if one is meant for the
+    // line.
     bool takes(const DesktopEvent& event, const std::vector<EyePart>& parts);
     [[nodiscard]] bool isPointedAt() const { return is_pointed_at_; }
+    [[nodiscard]] bool isDragged() const { return is_dragged_; }
     // True once after it has moved.
     [[nodiscard]] bool takeMove() { return std::exchange(has_moved_, false); }
 

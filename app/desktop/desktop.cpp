@@ -129,8 +129,10 @@ private:
         using Kind = DesktopEvent::Kind;
         if (panel_.takesText(event)) { return; }
         const WindowLayout at = layout();
-        if (panel_.takesMouse(event, at.panel, !place_.isDragged())) { return layOutPanel(0.0); }
-        if (scenes_.other() != nullptr && curtain_.takes(event, at.parts)) { return; }
+        const bool compares = scenes_.other() != nullptr;
+        const bool is_free = !place_.isDragged() && !(compares && curtain_.isDragged());
+        if (panel_.takesMouse(event, at.panel, is_free)) { return layOutPanel(0.0); }
+        if (compares && curtain_.takes(event, at.parts)) { return; }
         place_.handle(event, at, panel_.picture().entry());
         if (event.kind == Kind::kDrop && !place_.takeViewpoints(event.path)) {
             scenes_.begin(event.path, event.second);

@@ -239,6 +239,13 @@ TEST_CASE_FIXTURE(AtWork, "two scenes are beside a curtain, and a held key shows
     window.await("the curtain is back");
     window.rest();
     check(wall, 0, 314);
+    // The line may also be let go on the panel.
+    window.drag(1, {320.0, 250.0}, {1.0, 250.0});
+    window.await("the curtain hangs at 0 %");
+    hands("key Tab");
+    window.rest();
+    window.drag(1, {1.0, 250.0}, {1200.0, 300.0});
+    window.await("the curtain hangs at 100 %");
 
     const unsigned long number = numberOfWindow("^builtin:slanted-wall . fence.ply - binosplat$", "WINDOW");
     desk().connection.drop(number, {work.path / "one.ply", work.path / "fence.ply"});
