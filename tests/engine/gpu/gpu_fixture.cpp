@@ -49,7 +49,7 @@ gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
     const std::uint32_t count = needed <= capacity ? needed : 0;
     const auto over = [&](std::uint64_t group_items) {
         const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
-        const vk::Extent2D rows = Commands::rowsOf(groups);
+        const vk::Extent2D rows = groups > 0 ? Commands::rowsOf(groups) : vk::Extent2D(0, 0);
         return gpu::DispatchSize{rows.width, rows.height, 1};
     };
     constexpr std::uint64_t kMostAtOnce = std::uint64_t{gpu::kSortBlock} * gpu::kMaxSortBlocks;
