@@ -59,7 +59,8 @@ ROOMS = {
 }
 
 SYSTEM_HEADERS = re.compile(
-    r"^\s*#\s*include\s*<((?:sys|linux|netinet|arpa)/.*|(?:unistd|fcntl|signal|poll|spawn|dirent|dlfcn|pthread|pwd"
+    r"^\s*#\s*include\s*<((?:sys|linux|netinet|arpa)/.*"
+    r"|(?:unistd|fcntl|signal|poll|spawn|dirent|dlfcn|pthread|pwd"
     r"|termios|sched|pty|io|process|direct|[Ww]indows)\.h)>", re.MULTILINE)
 
 

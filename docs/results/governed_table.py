@@ -3,9 +3,9 @@
 
 For each view of configs/bench/seen.toml at 640x640: has the governor hold `temporal` within SHARE (0.7) of the time
 of `two-pass` at the same poses, and compares it with `temporal` at the full size and with lower resolutions in the
-same time (bad tiles interpolated over times). Times are means of the frames' shares of `two-pass`. At 90 Hz from second
-16; what counts is the second from 17, when the governor has settled. DATA is a folder with the scenes. Prints a row for
-each view, and writes what bench said under OUT.
+same time (bad tiles interpolated over times). Times are means of the frames' shares of `two-pass`. At 90 Hz
+from second 16; what counts is the second from 17, when the governor has settled. DATA is a folder with the
+scenes. Prints a row for each view, and writes what bench said under OUT.
 """
 import csv
 import os

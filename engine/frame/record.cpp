@@ -114,7 +114,11 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
 
 void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan,
                                   std::span<const HistoryInputs> pictures) const {
-    if (!changes_known) { return; }
+    if (!changes_known) {
+        // This recording is made for its kernels alone, so that the first change need not wait for one.
+        if (scene.isInPages()) { kernels.get(MarkChangedKernel{}); }
+        return;
+    }
     const std::optional<std::span<const SceneChange>> changes = scene.changesSince(*changes_known);
     if (!changes || changes->empty()) { return; }
     std::vector<gpu::ChangedRect> rects;

@@ -131,7 +131,6 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
         memory_.fitPictures(next, settings.hidden_tiles);
         recorder(true).record(commands, next);
         commands.drop();
-        if (scene_->isInPages()) { makeKernelsForChanges(kernels_); }
     }
     // Nothing is known about earlier frames any more.
     moving_pays_.forget();

@@ -69,8 +69,6 @@ void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs
                       groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
 }
 
-void makeKernelsForChanges(PassKernels& kernels) { kernels.get(MarkChangedKernel{}); }
-
 void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes,
                   gpu::uint at_once, gpu::uint most_pairs) {
     const HistoryInputs& first = eyes.front();

@@ -38,8 +38,6 @@ void recordFromHistory(PassKernels& kernels, Commands& commands, const HistoryIn
 // Between the two: marks where the scene has changed since the history was made.
 void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs& in,
                    gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
-// So that the first change does not have to.
-void makeKernelsForChanges(PassKernels& kernels);
 // Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at
 // the same time. The first one's WarpView has the budget, a share of all eyes' work. `most_pairs`: the
 // capacity of their list.
