@@ -66,7 +66,7 @@ SCRIPT(simulated_script, "xr/simulated/script/simulated_script") {
         CHECK(controller(wordsIn(line)).tracked == (wordsIn(line).at(2) == "true"));
     };
     host.verbs["fov"] = [&](const std::string& line) {
-        const Fov& fov = script->at(0.0).eyes[line.starts_with("left") ? kLeft : kRight].fov;
+        const Fov fov = script->at(0.0).eyes[line.starts_with("left") ? kLeft : kRight].fov;
         const std::vector<std::string> words = wordsIn(line);
         std::size_t i = 0;
         for (const double angle_rad : {fov.left_rad, fov.right_rad, fov.up_rad, fov.down_rad}) {
