@@ -11,11 +11,15 @@ namespace binosplat {
 namespace {
 
 constexpr double kMessageSeconds = 6.0;
+constexpr double kHighMetres = 0.16;  // enough for three lines
+
+glm::dvec3 placeOf(bool is_above) { return {0.0, is_above ? -0.28 : 0.28, 1.0}; }
 
 }  // namespace
 
-void MessageLine::show(RoomSight& sight, const TexelLayout& layout, bool panel_is_shown,
-                       double step_seconds) {
+void MessageLine::show(RoomSight& sight, const TexelLayout& layout, const PanelInRoom* panel,
+                       const Pose& room_from_head, double step_seconds) {
+    const bool panel_is_shown = panel != nullptr;
     const std::string message = std::exchange(message_, {});
     seconds_left_ = panel_is_shown ? 0.0 : std::max(seconds_left_ - step_seconds, 0.0);
     if (!message.empty() && !panel_is_shown) {
@@ -25,6 +29,12 @@ void MessageLine::show(RoomSight& sight, const TexelLayout& layout, bool panel_i
     if (const auto gesture = seconds_left_ > 0.0 ? std::nullopt : first_steps_.update(step_seconds)) {
         sight.message = drawGesture(*gesture, layout);
     }
+    const auto isCovered = [&](bool above) {
+        return panel_is_shown &&
+               panel->covers(room_from_head, placeOf(above), {kMessageMetres, kHighMetres});
+    };
+    is_above_ = panel_is_shown && is_above_ != (isCovered(is_above_) && !isCovered(!is_above_));
+    sight.message_place = placeOf(is_above_);
     sight.has_message = seconds_left_ > 0.0 || first_steps_.areShown();
 }
 

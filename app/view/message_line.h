@@ -1,8 +1,9 @@
 // A line of text in front of the wearer's eyes: a message for some seconds while the panel is hidden,
-// otherwise the first steps.
+// otherwise the first steps. It is a little below where one looks, or above if the panel hangs there.
 #pragma once
 
 #include "app/view/panel/first_steps.h"
+#include "app/view/room/panel_in_room.h"
 #include "app/view/room/room_things.h"
 
 #include <string>
@@ -16,13 +17,15 @@ public:
 
     // In the next frame.
     void say(const std::string& message) { message_ = message; }
-    // Adds to what is drawn in this frame, in `layout`.
-    void show(RoomSight& sight, const TexelLayout& layout, bool panel_is_shown, double step_seconds);
+    // Adds to what is drawn in this frame, in `layout`. `panel`: null if it is hidden.
+    void show(RoomSight& sight, const TexelLayout& layout, const PanelInRoom* panel,
+              const Pose& room_from_head, double step_seconds);
 
 private:
     FirstSteps first_steps_;
     std::string message_;        // to be shown
     double seconds_left_ = 0.0;  // for the one that is shown
+    bool is_above_ = false;
 };
 
 }  // namespace binosplat

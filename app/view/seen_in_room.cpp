@@ -25,7 +25,8 @@ void SeenInRoom::choose(ConnectedHeadset& headset, const WearerNow& wearer, cons
     std::ranges::copy(controls.things(sight.eye), std::back_inserter(sight.things));
     sight.arc = controls.arc();
     sight.vignette_m = vignette_.widthMetres(views);
-    message_line_.show(sight, headset.things.layout(), settings.panel, wearer.step_seconds);
+    message_line_.show(sight, headset.things.layout(), settings.panel ? &panel : nullptr,
+                       wearer.room_from_head, wearer.step_seconds);
     headset.things.choose(sight);
 }
 

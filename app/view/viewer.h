@@ -5,10 +5,8 @@
 #include "app/view/headset/headset_connection.h"
 #include "app/view/headset/waiting_frames.h"
 #include "app/view/panel/scene_requests.h"
-#include "app/view/scene_exchange.h"
-#include "app/view/seen_in_room.h"
 #include "app/view/viewer_window.h"
-#include "app/view/wearer/gaze_follower.h"
+#include "app/view/wearer_actions.h"
 
 #include <chrono>
 
@@ -41,8 +39,6 @@ private:
     void takeScenes(bool at_once);  // see SceneExchange
     // Moves the room's origin to the head, once its pose is known or on request.
     void settle();
-    // What hands and gaze do in this frame.
-    void control(const WearerNow& wearer, FrameViews& views);
     // Shows the scene; false: there is none, or no memory for its frames.
     bool renderScene(FrameViews& views);
     void renderWaiting();
@@ -52,9 +48,7 @@ private:
     void layOutPanel(bool hung, double step_seconds);
     void followPanel(const PanelRequests& requests);
     void takeWindowInput(double step_seconds);
-    void togglePanel();
     void reloadShaders();
-    void sayPicture(const std::optional<std::string>& outcome);
     // In the log, on the panel and in front of the eyes.
     void say(const std::string& message);
     void sayChange();
@@ -73,8 +67,6 @@ private:
     FrameSubmission submission_;
     Panel panel_;
     ViewerWindow window_;
-    WearerControls controls_;
-    GazeFollower gaze_;
     WaitingFrames waiting_;
     ScenePointing pointing_;
     bool picture_asked_ = false;  // for the next frame
@@ -90,6 +82,7 @@ private:
     SceneRequests requests_;
     KeptPicture kept_picture_;
     SceneExchange exchange_;
+    WearerActions actions_;
     PictureWriter pictures_;  // last: it shows scenes
 };
 

@@ -19,6 +19,11 @@ struct ConnectedHeadset {
     // for them and the headset takes them. Throws xr::Lost if the session is lost at once.
     ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
 
+    // Both eyes' images, and those of their insets: to be drawn, filled with a colour, and to be shown.
+    void acquireEyes();
+    void clearEyes(Commands& commands, const glm::vec4& colour);
+    void releaseEyes();
+
     std::optional<xr::InsetSizes> inset;  // as recommended
     xr::Session session;
     vk::Format format;
@@ -31,6 +36,10 @@ struct ConnectedHeadset {
     std::unique_ptr<EyeImages> inset_images;  // with them, in a session with insets
     ImagesAhead images_ahead;
     LensMask lens_mask;
+
+private:
+    template <typename Act>
+    void forEyes(const Act& act);
 };
 
 }  // namespace binosplat

@@ -44,6 +44,22 @@ void PanelInRoom::comeBefore(const Pose& room_from_head, double step_seconds) {
     hangBefore(room_from_head);
 }
 
+bool PanelInRoom::covers(const Pose& room_from_head, const glm::dvec3& place,
+                         const glm::dvec2& size_m) const {
+    const Pose head_from_panel = compose(inverse(room_from_head), room_from_panel_);
+    glm::dvec2 least(1e9), most(-1e9);  // as seen at the rectangle's distance
+    for (const glm::dvec2 corner : {glm::dvec2(-0.5, -0.5), {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}}) {
+        const glm::dvec3 seen = transform(head_from_panel, glm::dvec3(corner * size_m_, 0.0));
+        if (seen.z <= 0.0) { return false; }
+        const glm::dvec2 at = glm::dvec2(seen) * (place.z / seen.z);
+        least = glm::min(least, at);
+        most = glm::max(most, at);
+    }
+    const glm::dvec2 middle(place);
+    return glm::all(glm::lessThan(least, middle + 0.5 * size_m)) &&
+           glm::all(glm::greaterThan(most, middle - 0.5 * size_m));
+}
+
 std::optional<PanelInRoom::Hit> PanelInRoom::meet(const Pose& room_from_aim) const {
     const Pose panel_from_aim = compose(inverse(room_from_panel_), room_from_aim);
     const glm::dvec3 direction = panel_from_aim.orientation * glm::dvec3(0.0, 0.0, 1.0),

@@ -30,6 +30,9 @@ public:
     [[nodiscard]] const Pose& roomFromPanel() const { return room_from_panel_; }
     [[nodiscard]] glm::dvec2 sizeMetres() const { return size_m_; }
     [[nodiscard]] const PanelPointer& pointer() const { return pointer_; }
+    // True if it is in front of part of a rectangle of `size_m` around this place, in the head's axes.
+    [[nodiscard]] bool covers(const Pose& room_from_head, const glm::dvec3& place,
+                              const glm::dvec2& size_m) const;
     // True if this hand is the pointer.
     [[nodiscard]] bool isPointedAtBy(int hand) const { return pointing_hand_ == hand; }
     // True if this hand has just hit the panel or clicked on it.

@@ -12,9 +12,6 @@ namespace {
 // A controller of no particular make: a handle in the fist, and a knob in front of it.
 constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045,
                  kKnobMetres = 0.055;
-// A message is a little below where one looks, as wide as a newspaper.
-const glm::dvec3 kMessagePlace(0.0, 0.28, 1.0);
-constexpr double kMessageMetres = 0.8;
 constexpr std::size_t kTexelsOfUpdate = 16384;  // that fit into one update of a command buffer
 // What goes on without, if the runtime fails.
 constexpr const char *kHands = "pictures of hands", *kArcs = "arcs",
@@ -93,10 +90,10 @@ void RoomThings::choose(const RoomSight& sight) {
     }
     if (sight.arc != nullptr) { chooseArc(*sight.arc, sight.eye); }
     for (const Thing& thing : sight.things) { add(thing); }
-    if (sight.has_message) { chooseMessage(sight.message); }
+    if (sight.has_message) { chooseMessage(sight.message, sight.message_place); }
 }
 
-void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
+void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture, const glm::dvec3& place) {
     if (picture && message_.texels.bytes() > 0) {
         if (!troubles_.tryFor(kMessages, [&] { message_.now = message_.images.acquire(); })) {
             message_ = {};
@@ -105,7 +102,7 @@ void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
     }
     if (message_.texels.bytes() == 0 || message_.picture.texels.empty()) { return; }
     const glm::dvec2 size_px(message_.picture.size_px);
-    const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), kMessagePlace};
+    const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), place};
     quads_.push_back({ahead,
                       kMessageMetres * glm::dvec2(1.0, size_px.y / size_px.x),
                       &message_.images,

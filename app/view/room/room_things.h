@@ -11,6 +11,9 @@
 
 namespace binosplat {
 
+// How wide a message is, a metre away: like a newspaper.
+inline constexpr double kMessageMetres = 0.8;
+
 // The things to draw in a frame.
 struct RoomSight {
     glm::dvec3 eye{0.0};                           // the midpoint between the wearer's eyes
@@ -21,6 +24,7 @@ struct RoomSight {
     // A line of text in front of the head: redrawn if there is a picture, otherwise as it was.
     bool has_message = false;
     std::optional<TexelPicture> message;
+    glm::dvec3 message_place{0.0};  // of its middle, in the head's axes
 };
 
 // Together they fit into the 16 layers that every runtime accepts: the vignette, two parts of each
@@ -60,7 +64,7 @@ private:
     [[nodiscard]] std::array<DrawnImage*, 4> drawnImages() {
         return {&hands_[kLeft], &hands_[kRight], &arc_, &message_};
     }
-    void chooseMessage(const std::optional<TexelPicture>& picture);
+    void chooseMessage(const std::optional<TexelPicture>& picture, const glm::dvec3& place);
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
     void chooseHand(const xr::Hand& hand, DrawnImage& image, const glm::dvec3& eye);
     void chooseArc(const Arc& arc, const glm::dvec3& eye);

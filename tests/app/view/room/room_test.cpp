@@ -92,6 +92,22 @@ TEST_CASE("an arc is opaque along its bends and nowhere else, without gaps, and 
                               [&](std::uint32_t texel) { return texel >> 24 < 250u || isRed(texel); }));
 }
 
+TEST_CASE("the panel covers what is behind it as the head sees it, and nothing else") {
+    PanelInRoom panel({100, 100}, 0.5);
+    panel.hangBefore({});
+    const glm::dvec3 place = panel.roomFromPanel().position;
+    constexpr glm::dvec2 kSmall(0.01);
+    CHECK(panel.covers({}, place, kSmall));
+    CHECK(panel.covers({}, 3.0 * place, kSmall));
+    // Its edges are a quarter of a metre from its middle, which may be seen at an angle.
+    for (const glm::dvec3 beside : {glm::dvec3(0.3, 0.0, 0.0), glm::dvec3(0.0, -0.3, 0.0)}) {
+        CHECK_FALSE(panel.covers({}, place + beside, kSmall));
+        CHECK(panel.covers({}, place + beside, glm::dvec2(0.2)));
+    }
+    const Pose turned_away{glm::angleAxis(3.0, glm::dvec3(0.0, 1.0, 0.0)), glm::dvec3(0.0)};
+    CHECK_FALSE(panel.covers(turned_away, place, glm::dvec2(5.0)));
+}
+
 TEST_CASE("a panel out of sight comes before the eyes after a while, one that is seen stays") {
     PanelInRoom panel({100, 100}, 0.5);
     const glm::dvec3 before = panel.roomFromPanel().position;
