@@ -178,7 +178,8 @@ MethodFrames::Rendered MotionPoint::render(const Posed& pose, MethodHistory& seq
                       .period_ms = most_ms,
                       .work = rendered.result.work_rendered,
                       .warp_error = rendered.result.warp_error,
-                      .half_loss = rendered.result.half_loss});
+                      .half_loss = rendered.result.half_loss,
+                      .is_full = !rendered.result.counters.warped});
     return rendered;
 }
 

@@ -284,7 +284,8 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .lost_periods = headset.session.lostPeriods(),
                        .work = last_.work_rendered,
                        .warp_error = last_.warp_error,
-                       .half_loss = last_.half_loss});
+                       .half_loss = last_.half_loss,
+                       .is_full = !last_.counters.warped});
     sayGoverned(governor_.settings() != before);
     sayCutShort(shown.drawsOther());
 }

@@ -19,6 +19,9 @@ constexpr double kJumpZoom = 0.1;
 constexpr double kFarthestHistoryMetres = 0.05, kFarthestHistoryShare = 0.8;
 // Beyond this a history is too coarse, or much finer than needed.
 constexpr double kMostZoom = 2.0;
+// While frames are rendered in full, nothing is known about what would have to be rendered again: less and
+// less is assumed, by half in a second at 90 Hz, so that reprojecting is tried again.
+constexpr double kShareFades = 0.9923;
 
 bool moves(const Pose& from, const Pose& to, double farthest) {
     const bool turns =
@@ -76,6 +79,19 @@ MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSett
     const int dominant = settings.mode == Mode::kMono ? 0 : settings.dominant;
     return {stereoSettingsOf(settings), dominant, eyes[0].size_px,
             settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
+}
+
+void HistoryPays::ask(const StereoSettings& settings) {
+    if (settings == asked_) { return; }
+    asked_ = settings;
+    pays_ = true;
+}
+
+void HistoryPays::learn(double full, std::optional<double> rendered, double tiles) {
+    full_ = full;
+    share_ = rendered ? *rendered / std::max(full, 1.0) : kShareFades * share_;
+    const double cost = asked_.move_cost * tiles;
+    pays_ = (1.0 - share_) * full >= (pays_ ? cost : cost * (1.0 + 1.0 / gpu::kResumePart));
 }
 
 }  // namespace binosplat

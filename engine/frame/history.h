@@ -3,6 +3,7 @@
 
 #include "engine/frame/settings.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -56,6 +57,28 @@ public:
 private:
     Asked asked_;
     bool pays_ = true;
+};
+
+// Whether reprojecting pays for `temporal`: frames are rendered in full, which is exact, for as long as
+// reprojecting both eyes' histories would cost more than it saves. Works are of both eyes, in pairs of tile
+// and splat.
+class HistoryPays {
+public:
+    [[nodiscard]] bool mayReproject() const { return pays_; }
+    // The work of a picture in full, as far as known.
+    [[nodiscard]] double fullWork() const { return full_; }
+    // With other settings, less may have to be rendered again.
+    void ask(const StereoSettings& settings);
+    // A frame of so many tiles, `move_cost` each; `rendered`: what of it was rendered again, if it had a
+    // history.
+    void learn(double full, std::optional<double> rendered, double tiles);
+    void forget() { *this = {}; }
+
+private:
+    StereoSettings asked_;
+    bool pays_ = true;
+    double full_ = 0.0;
+    double share_ = 0.0;  // of the work that is rendered again
 };
 
 }  // namespace binosplat

@@ -23,11 +23,12 @@ void keepForWarp(Kept& source, const Warp& warp) {
 
 // True if one kernel suits both eyes, and rendering both whole at once takes little more memory than one
 // after the other: if a pair fits into a word, and lists may lie in the pictures. With a history or coarse
-// tiles they may not.
-bool canRenderAtOnce(const FramePlan& plan, const FrameSettings& settings, std::uint32_t splats) {
+// tiles they may not, unless they are short (`is_little`).
+bool canRenderAtOnce(const FramePlan& plan, const FrameSettings& settings, std::uint32_t splats,
+                     bool is_little) {
     const TargetPlan &left = plan.targets[0], &right = plan.targets[1];
     const glm::uvec2 tiles = tilesOf(left.memory_px);
-    return plan.shares_order && !plan.keeps_history && !left.coarse &&
+    return plan.shares_order && (!plan.keeps_history || is_little) && !left.coarse &&
            left.eye.size_px == right.eye.size_px && left.memory_px == right.memory_px &&
            left.kept.cut == right.kept.cut && (left.tiles_hidden > 0) == (right.tiles_hidden > 0) &&
            !settings.keep_moments && PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
@@ -176,7 +177,9 @@ Histories historiesAfter(const FramePlan& plan, const Histories& before) {
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move,
                     std::uint32_t splats, const Histories& histories) {
     const bool keeps_history = hasHistory(settings.mode) && settings.keep_history;
-    const bool has_history = keeps_history && histories.of_eyes[0] && histories.of_eyes[1];
+    // `temporal` does without the histories where reprojecting them does not pay.
+    const bool in_full = keeps_history && settings.mode == Mode::kTemporal && !may_move;
+    const bool has_history = keeps_history && !in_full && histories.of_eyes[0] && histories.of_eyes[1];
     // If no history is kept, `temporal` falls back to `predicted`. If there is none, as after a jump, both
     // eyes are exact, since later pictures are made from them. And if each eye is cheap to render, making one
     // from the other would save a tenth of the time at the price of 15 to 30 dB.
@@ -227,6 +230,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         if (coarse) { plan.targets.back().gaze = settings.gazes[static_cast<std::size_t>(e)]; }
     }
     plan.keeps_history = keeps_history;
+    plan.reprojecting_is_dear = in_full;
     if (keeps_history && !has_history) { plan.spare_picture = static_cast<int>(eyes.size()); }
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
@@ -255,7 +259,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         return plan;
     }
 
-    if (mode == Mode::kShared && canRenderAtOnce(plan, settings, splats)) {
+    if (mode == Mode::kShared && canRenderAtOnce(plan, settings, splats, in_full)) {
         plan.at_once = both.eyes.at_once = 2;
     }
     if (apart) {

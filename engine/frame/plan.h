@@ -94,6 +94,7 @@ struct FramePlan {
     std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
     int dominant = 0;                                   // of the targets
     bool keeps_history = false;                         // later frames are made from this one
+    bool reprojecting_is_dear = false;                  // both eyes are rendered in full for that reason
     std::optional<int> spare_picture = {};              // the picture for the frame after this one
     // How many pictures are rendered at the same time, from lists with capacity for each; and in that frame.
     int at_once = 1, at_once_ahead = 1;
@@ -123,8 +124,8 @@ struct FramePlan {
 
 // The only place that knows what a mode does. Throws Error if eyes that are made from one another have
 // different sizes, or if one is larger than any can be. `may_move`: warping paid in the frame before, or that
-// is unknown. `splats`: the most that the scene can show. `histories`: the histories that earlier frames have
-// left; their pictures may have other sizes.
+// is unknown; if not, `temporal` renders both eyes in full. `splats`: the most that the scene can show.
+// `histories`: the histories that earlier frames have left; their pictures may have other sizes.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move,
                     std::uint32_t splats, const Histories& histories = {});
 // What such a frame leaves to the next one.

@@ -54,6 +54,7 @@ void StereoFrame::show(const GpuScene& scene) {
     memory_.show(scene);
     scene_ = &scene;
     moving_pays_.forget();
+    history_pays_.forget();
     histories_ = {};
     changes_known_ = scene.changesRecorded();
     cut_short_ = done_again_ = 0;
@@ -71,43 +72,6 @@ void StereoFrame::reserveForChanges(std::uint64_t bytes) {
     for (Flight& flight : flights_) { flight.commands.reserveStaging(bytes); }
 }
 
-bool StereoFrame::growFor(glm::uvec2 size_px) {
-    // Nothing is known, or the device lacks the memory.
-    if (plan_.targets.empty() || memory_.isFirstFrame() || FrameMemory::isCutShort(state_) ||
-        !memory_.growsBeside() || !memory_.fitsAhead()) {
-        return true;
-    }
-    FramePlan plan = plan_;
-    FrameState state = stateAhead();
-    double pairs = 0.0, splats = 0.0;
-    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        TargetState& target = state.targets[t];
-        // A history of another size is of no use: all of a larger picture is rendered.
-        if (plan.targets[t].history) {
-            target.pairs.needed = std::max(target.pairs.needed, target.warp_counters.picture_cost);
-        }
-        pairs += target.pairs.needed;
-        // The list of what is rendered at once is that of the first.
-        if (plan.at_once > 1 || target.pairs.needed > 0) {
-            splats += state.visible[static_cast<std::size_t>(plan.targets[t].list)].needed;
-        }
-    }
-    // What a splat touches, one tile and more to each side, as if all were alike.
-    const double times = std::max(1.0 * size_px.x / plan.targets[0].eye.size_px.x, 1.0),
-                 across = std::sqrt(std::max(pairs / std::max(splats, 1.0), 1.0)),
-                 across_then = 1.0 + times * (across - 1.0),
-                 more = across_then * across_then / (across * across);
-    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        std::uint32_t& needed = state.targets[t].pairs.needed;
-        const double at_once = plan.at_once > 1 ? pairs : needed;
-        needed = static_cast<std::uint32_t>(std::min(more * at_once, 1.0 * gpu::kMaxItems));
-        plan.targets[t].eye.size_px = size_px;
-    }
-    if (memory_.hasCapacity(plan, state, kCapacityAhead)) { return true; }
-    memory_.growBeside(plan, state);
-    return false;
-}
-
 void StereoFrame::rebuildKernels() {
     finish();
     kernels_.rebuild();
@@ -118,8 +82,8 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     histories_ = {};
     prepare(eyes, settings);
     Commands& commands = flight().commands;
-    // `predicted` may find that warping does not pay.
-    if (choiceOf(settings.mode) == TileChoice::kPredicted) {
+    // They may find that warping does not pay.
+    if (choiceOf(settings.mode) == TileChoice::kPredicted || settings.mode == Mode::kTemporal) {
         recorder(true).record(commands, planFrame(settings, eyes, false, scene_->splatCount()));
         commands.drop();
     }
@@ -134,6 +98,7 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     }
     // Nothing is known about earlier frames any more.
     moving_pays_.forget();
+    history_pays_.forget();
     memory_.forgetFrames();
 }
 
@@ -243,8 +208,13 @@ FrameResult StereoFrame::take(const Flight& flight) {
         const gpu::WarpCounters& counters = state_.targets[static_cast<std::size_t>(*warped)].warp_counters;
         moving_pays_.learn(flight.asked, counters.pays != 0);
     }
-    return reportFrame({context_, *scene_, memory_, flight.plan, state_, flight.commands},
-                       flight.settings.mark);
+    FrameResult result =
+        reportFrame({context_, *scene_, memory_, flight.plan, state_, flight.commands}, flight.settings.mark);
+    if (flight.settings.mode == Mode::kTemporal && flight.plan.keeps_history &&
+        !FrameMemory::isCutShort(state_)) {
+        learnWhetherHistoryPays(result.counters);
+    }
+    return result;
 }
 
 void StereoFrame::renderUntilComplete(const FrameSettings& settings, const Append& append) {
@@ -278,36 +248,6 @@ void StereoFrame::renderOnce(const FrameSettings& settings, const Append& append
     flight().commands.submitAndWait();
     state_ = flight().readback.mapped<FrameState>()[0];
     splats_known_ = flight().splats_held;
-}
-
-FrameState StereoFrame::stateAhead() const {
-    FrameState ahead = state_;
-    const std::uint32_t more =
-        scene_->splatsComing() > splats_known_ ? scene_->splatsComing() - splats_known_ : 0;
-    if (more == 0) { return ahead; }
-    std::uint64_t visible = 1;
-    for (const ListPlan& list : plan_.lists) {
-        const auto l = static_cast<std::size_t>(list.eyes.list);
-        visible = std::max<std::uint64_t>(visible, state_.visible[l].needed);
-        ahead.visible[l].needed = std::min(state_.visible[l].needed, gpu::kMaxItems - more) + more;
-    }
-    // Each of them touches about as many tiles as the present ones, none of which may have been visible yet.
-    constexpr std::uint64_t kLeastTiles = 2;
-    for (std::size_t t = 0; t < plan_.targets.size(); ++t) {
-        const std::uint64_t pairs = state_.targets[t].pairs.needed,
-                            of_more = more * std::max(pairs / visible, kLeastTiles);
-        ahead.targets[t].pairs.needed =
-            static_cast<std::uint32_t>(std::min<std::uint64_t>(pairs + of_more, gpu::kMaxItems));
-    }
-    return ahead;
-}
-
-void StereoFrame::growForVisible() {
-    recorder().recordCulling(flight().commands, plan_);
-    recorder().recordReport(flight().commands, flight().readback);
-    flight().commands.submitAndWait();
-    state_ = flight().readback.mapped<FrameState>()[0];
-    memory_.growIfItFits(plan_, state_);  // nothing is known about pairs yet
 }
 
 Histories StereoFrame::historiesFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
@@ -367,9 +307,10 @@ StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes,
 
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
-    const bool may_move = moving_pays_.mayMove(asked);
+    if (settings.mode == Mode::kTemporal) { history_pays_.ask(settings.stereo); }
+    const bool may_move = moving_pays_.mayMove(asked), in_full = rendersInFull(eyes, settings);
     const double changed = changedShare(eyes, settings);
-    plan_ = planFrame(settings, eyes, may_move, scene_->splatCount(),
+    plan_ = planFrame(settings, eyes, may_move && !in_full, scene_->splatCount(),
                       changed > kMostChanged ? Histories() : historiesFor(eyes, settings));
     if (changed <= kMostChanged) {
         plan_.budget = std::min(

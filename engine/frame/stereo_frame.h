@@ -190,6 +190,10 @@ private:
     // What the last known frame would have reported if it had seen all splats that come with the next
     // changes.
     [[nodiscard]] FrameState stateAhead() const;
+    // `temporal`: true if reprojecting does not pay, and the lists have capacity for whole pictures. If they
+    // lack it, longer ones are being made.
+    [[nodiscard]] bool rendersInFull(std::span<const Eye> eyes, const FrameSettings& settings);
+    void learnWhetherHistoryPays(const FrameCounters& counters);
     // Counts the splats that the eyes see, which costs little; if their list is too short, nothing is known
     // about what follows.
     void growForVisible();
@@ -215,6 +219,7 @@ private:
     FrameState state_{};              // the report of the last known frame
     std::uint32_t splats_known_ = 0;  // how many the scene had then
     MovingPays moving_pays_;
+    HistoryPays history_pays_;
     bool brings_changes_ = true;
     // The scene's changes that the last frame shows, see GpuScene::changesSince.
     std::uint64_t changes_known_ = 0;

@@ -204,7 +204,8 @@ void Governor::measure(const GovernedFrame& frame) {
     keep(recent_ms_, frame.gpu_ms);
     keep(recent_work_, frame.work);
     if (turnsKnobs()) {
-        model_.add(knobs(), {frame.gpu_ms, seconds, frame.work, frame.warp_error, frame.half_loss});
+        model_.add(knobs(),
+                   {frame.gpu_ms, seconds, frame.work, frame.warp_error, frame.half_loss, frame.is_full});
     }
     misses_.add(frame.lost_periods, now_s_);
     if (!misses_.areLeftAlone() && why_ == kOthersMiss) { why_.clear(); }

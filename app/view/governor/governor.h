@@ -42,6 +42,7 @@ struct GovernedFrame {
     // The share that was rendered again: less than the budget if there was less to re-render.
     double work = 1.0;
     double warp_error = 0.0, half_loss = 0.0;  // see KnobFrame
+    bool is_full = false;                      // likewise
 };
 
 // True if a share of work is rendered again: of one eye's (kPredicted), of both eyes' (kTemporal).

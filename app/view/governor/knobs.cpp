@@ -61,6 +61,7 @@ double KnobModel::sumOf(const Terms& terms, const Terms& shares) {
 }
 
 double KnobModel::workAt(double bound_db) const {
+    if (full_) { return 1.0; }
     const double up_db = bound_db - visits_.back().knobs.bound_db;
     const double per_db = up_db > 0.0 ? std::max(work_per_db_, kWorkUpPerDb) : kWorkDownPerDb;
     return std::min(work_ * std::exp(per_db * up_db), 1.0);
@@ -76,6 +77,7 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
         work_ = workAt(knobs.bound_db);
         warp_error_ *= std::pow(10.0, 0.1 * kErrorDbPerDb * (visits_.back().knobs.bound_db - knobs.bound_db));
     }
+    full_ = frame.is_full;
     enter(knobs);
     noteChange(frame);
     for (Visit& visit : visits_) {
@@ -87,13 +89,13 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     now.ms = lowerMedianOf(now.all_ms);
     now.work = lowerMedianOf(now.all_work);
     now.weight = 1.0;
-    if (visits_.size() > 1 && now.all_ms.size() == kSeenForChange) {
+    if (!full_ && visits_.size() > 1 && now.all_ms.size() == kSeenForChange) {
         learnWork(visits_[visits_.size() - 2], now);
     }
-    work_ = follow(work_, frame.work);
+    if (!full_) { work_ = follow(work_, frame.work); }
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
     // Once losses have been measured, a frame without one had no loss on its few tiles.
-    if (frame.half_loss > 0.0 || losses_ > 0) {
+    if (!full_ && (frame.half_loss > 0.0 || losses_ > 0)) {
         loss_ += std::max(1.0 / ++losses_, kLossSmoothing) * (lossOf(frame.half_loss, knobs.scale) - loss_);
     }
     fit();
@@ -193,8 +195,8 @@ void KnobModel::fit() {
 
 double KnobModel::expectedError(const Knobs& knobs) const {
     const double over_db = knobs.bound_db - visits_.back().knobs.bound_db;
-    return loss_ * (std::pow(knobs.scale, -3.0) - 1.0) +
-           warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
+    const double warp_error = full_ ? 0.0 : warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
+    return loss_ * (std::pow(knobs.scale, -3.0) - 1.0) + warp_error;
 }
 
 Knobs KnobModel::best(double most_ms, const KnobLimits& limits) const {

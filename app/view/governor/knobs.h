@@ -24,6 +24,8 @@ struct KnobFrame {
     double warp_error = 0.0;  // the expected error of the tiles that were not rendered; 0 if unknown
     // What half of the resolution would lose, as measured on a few tiles; 0 if unknown.
     double half_loss = 0.0;
+    // Rendered in full, since reprojecting did not pay: the bound means nothing.
+    bool is_full = false;
 };
 
 // The limits of a choice: resolution in tenths of `whole`, bounds in whole dB.
@@ -87,6 +89,7 @@ private:
     double warp_error_ = 0.0;    // likewise
     double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^3 - 1)
     int losses_ = 0;             // number of measurements
+    bool full_ = false;          // the last frame was
     Terms shares_{};             // as fitted to the visits
     Terms settled_{};            // the same after the first frames at the present knobs
     std::size_t settling_ = 0;   // how many of these are still to come

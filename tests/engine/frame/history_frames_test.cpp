@@ -108,6 +108,67 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, without a fr
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "where reprojecting would cost more than it saves, frames are rendered in full") {
+    const ViewedScene view = viewAtelier(kSizePx);
+    KeptFrame frame(context(), view.scene);
+    const auto full = StereoFrame::beside(frame);
+    FrameSettings settings = makeSettings(Mode::kTemporal);
+    frame.makeKernels(walkedEyes(view.eye, 0), settings);
+    const std::size_t kernels = frame.kernelCount();
+    const auto go = [&](int step, gpu::uint move_cost) {
+        settings.stereo.move_cost = move_cost;
+        std::optional<FrameResult> result = frame.renderAhead(walkedEyes(view.eye, step), settings);
+        if (std::optional<FrameResult> last = frame.finish()) { result = std::move(last); }
+        return result.value();
+    };
+    for (int step = 0; step < 3; ++step) { CHECK(go(step, 0).counters.warped.has_value() == (step > 0)); }
+    // The first frame with other settings is made from its history, and finds out; then lists for both
+    // pictures are made beside a frame.
+    for (int step = 3; step < 5; ++step) { CHECK(go(step, 1000000).counters.warped); }
+    for (int step = 5; step < 7; ++step) {
+        const FrameResult result = go(step, 1000000);
+        CHECK_FALSE(result.counters.warped);
+        CHECK(result.counters.commands <= 20);
+        CHECK(std::ranges::any_of(
+            result.left_out, [](const std::string& what) { return what.starts_with("reprojection: "); }));
+        full->render(walkedEyes(view.eye, step), makeSettings(Mode::kShared));
+        CHECK(shownBy(frame) == shownBy(*full));
+    }
+    // What they leave is a history like any other.
+    const FrameResult result = go(7, 0);
+    REQUIRE(result.counters.warped);
+    CHECK(result.work_rendered <= 0.22);
+    full->render(walkedEyes(view.eye, 7), makeSettings(Mode::kShared));
+    CHECK(psnrDb(picturesOf(frame), picturesOf(*full)) > 36.0);
+    CHECK(frame.kernelCount() == kernels);
+    CHECK(result.counters.ahead->frames_cut_short == 0);
+}
+
+TEST_CASE("whether reprojecting pays is decided by its cost, and tried again after a while") {
+    HistoryPays pays;
+    StereoSettings settings;
+    settings.move_cost = 32;
+    pays.ask(settings);
+    constexpr double kTiles = 10.0;
+    pays.learn(1000.0, 679.0, kTiles);
+    CHECK(pays.mayReproject());
+    pays.learn(1000.0, 681.0, kTiles);
+    CHECK_FALSE(pays.mayReproject());
+    // It must then save an eighth more.
+    pays.learn(1000.0, 660.0, kTiles);
+    CHECK_FALSE(pays.mayReproject());
+    int frames = 0;
+    for (; !pays.mayReproject() && frames < 1000; ++frames) { pays.learn(1000.0, std::nullopt, kTiles); }
+    CHECK(frames >= 3);
+    CHECK(frames <= 90);
+    // If there is hardly anything to save, it is not tried.
+    for (int frame = 0; frame < 1000; ++frame) { pays.learn(300.0, std::nullopt, kTiles); }
+    CHECK_FALSE(pays.mayReproject());
+    settings.budget = 0.1;
+    pays.ask(settings);
+    CHECK(pays.mayReproject());
+}
+
 TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spent there") {
     // The error in the left third of both pictures, over some frames.
     const auto errorOf = [&](const FrameSettings& settings) {

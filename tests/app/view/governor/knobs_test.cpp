@@ -135,6 +135,33 @@ TEST_CASE("a load that goes away little by little is not taken for what the knob
     }
 }
 
+TEST_CASE("frames in full are exact whatever the bound, and say nothing about frames that are reprojected") {
+    const KnobLimits limits;
+    const Knobs all{1.0, 30.0};
+    KnobModel model;
+    for (int frame = 0; frame < 20; ++frame) {
+        model.add(all, {.ms = 8.0, .seconds = 0.01, .work = 0.3, .warp_error = 1e-4, .half_loss = 1e-3});
+    }
+    const double reprojected_error = model.expectedError(all);
+    CHECK(reprojected_error > 0.0);
+    const Knobs low{1.0, 22.0};
+    for (int frame = 0; frame < 20; ++frame) {
+        model.add(low, {.ms = 9.0, .seconds = 0.01, .work = 1.0, .is_full = true});
+    }
+    CHECK(model.expectedError(low) == 0.0);
+    // A lower bound would save nothing, so the resolution pays for the time, and the bound may be the best.
+    CHECK(model.best(9.5, limits) == all);
+    const Knobs quicker = model.best(7.0, limits);
+    CHECK(quicker.scale < 1.0);
+    CHECK(quicker.scale >= 0.7);
+    CHECK(quicker.bound_db == limits.most_bound_db);
+    for (int frame = 0; frame < 20; ++frame) {
+        model.add(all, {.ms = 8.0, .seconds = 0.01, .work = 0.3, .warp_error = 1e-4, .half_loss = 1e-3});
+    }
+    CHECK(model.expectedMs(all) == doctest::Approx(8.0).epsilon(0.05));
+    CHECK(model.expectedError(all) == doctest::Approx(reprojected_error).epsilon(0.1));
+}
+
 TEST_CASE("what three slow frames took away is given back within fifty frames, also where frames take long") {
     Governor governor;
     const Device slow{"both", 263.0, 0.12, 0.1, 0.45, 0.33};
