@@ -197,7 +197,10 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
                                             const std::optional<GovernedSettings>& chosen) {
     stopIfInterrupted();
     StereoOptions stereo = method.stereo;
-    if (chosen) { stereo.warp.error_bound_db = chosen->error_bound_db; }
+    if (chosen) {
+        stereo.warp.budget = chosen->budget;
+        stereo.warp.error_bound_db = chosen->error_bound_db;
+    }
     const Cameras cameras = atResolution(full_cameras, chosen ? chosen->resolution_scale : method.resolution);
     FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
     settings.near = cameras.near;

@@ -92,7 +92,10 @@ double leastScale(Quality quality) { return limitsOf(quality).scale; }
 
 void Governor::forget() {
     settings_ = own_;
-    if (turnsKnobs()) { settings_.error_bound_db = limitsOf(quality_).bound_db; }
+    if (turnsKnobs()) {
+        settings_.error_bound_db = limitsOf(quality_).bound_db;
+        settings_.budget = 1.0;  // a lower one would leave tiles under the bound, without the model's knowledge
+    }
     model_.forget();
     clearRecent();
     settling_ = kSettlingFrames;

@@ -24,8 +24,8 @@ constexpr std::size_t kMostVisits = 8, kMostFrames = 9;
 constexpr double kLeastWeight = 0.05, kForgottenPerSecond = 0.84;
 constexpr int kFitRounds = 24;  // starting from the previous frame's
 constexpr double kSmoothing = 0.15, kLossSmoothing = 0.05;
-// The head may soon move again as before, so work and errors fall slowly, by half in ten seconds at 90 Hz.
-constexpr double kFading = 0.99923;
+// The head may soon move again as before, so work and errors fall slowly, by half in ten seconds.
+constexpr double kFadingPerSecond = 0.933;
 // All visits take longer, or all take less time, if the scene or the device's clock rate has changed.
 constexpr double kChangedTime = 0.12;
 constexpr std::size_t kSeenForChange = 3, kLastingChange = 12;
@@ -45,8 +45,9 @@ void pushNew(std::deque<double>& values, double value) {
 // The loss at half of a resolution is 7 / scale^3 times this.
 double lossOf(double half_loss, double scale) { return half_loss * scale * scale * scale / 7.0; }
 
-double follow(double value, double now) {
-    return now > value ? value + kSmoothing * (now - value) : std::max(now, value * kFading);
+double follow(double value, double now, double seconds) {
+    return now > value ? value + kSmoothing * (now - value)
+                       : std::max(now, value * std::pow(kFadingPerSecond, seconds));
 }
 
 }  // namespace
@@ -61,7 +62,6 @@ double KnobModel::sumOf(const Terms& terms, const Terms& shares) {
 }
 
 double KnobModel::workAt(double bound_db) const {
-    if (full_) { return 1.0; }
     const double up_db = bound_db - visits_.back().knobs.bound_db;
     const double per_db = up_db > 0.0 ? std::max(work_per_db_, kWorkUpPerDb) : kWorkDownPerDb;
     return std::min(work_ * std::exp(per_db * up_db), 1.0);
@@ -92,8 +92,8 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     if (!full_ && visits_.size() > 1 && now.all_ms.size() == kSeenForChange) {
         learnWork(visits_[visits_.size() - 2], now);
     }
-    if (!full_) { work_ = follow(work_, frame.work); }
-    if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
+    if (!full_) { work_ = follow(work_, frame.work, frame.seconds); }
+    if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error, frame.seconds); }
     // Once losses have been measured, a frame without one had no loss on its few tiles.
     if (!full_ && (frame.half_loss > 0.0 || losses_ > 0)) {
         loss_ += std::max(1.0 / ++losses_, kLossSmoothing) * (lossOf(frame.half_loss, knobs.scale) - loss_);

@@ -69,7 +69,7 @@ private:
     };
     [[nodiscard]] double workAt(double bound_db) const;
     [[nodiscard]] double msBy(const Terms& shares, const Knobs& knobs) const {
-        return sumOf(termsOf(knobs.scale, workAt(knobs.bound_db)), shares);
+        return sumOf(termsOf(knobs.scale, full_ ? 1.0 : workAt(knobs.bound_db)), shares);
     }
     [[nodiscard]] Knobs bestBy(const Terms& shares, double most_ms, const KnobLimits& limits) const;
     [[nodiscard]] Terms usualShares() const;
