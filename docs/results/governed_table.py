@@ -14,7 +14,7 @@ import sys
 import tomllib
 
 METHODS = [{"name": "temporal", "mode": "temporal", "budget": [0.05, 0.1, 0.2, 0.3]},
-           {"name": "shared", "mode": "shared", "resolution": [0.5, 0.6, 0.7, 0.8]}]
+           {"name": "shared", "mode": "shared", "resolution": [0.3, 0.4, 0.5, 0.6, 0.7, 0.8]}]
 RATE, FIRST = 90, 90
 
 
