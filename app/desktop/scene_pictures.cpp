@@ -13,7 +13,10 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kRestSeconds = 0.15;  // without a change, before a picture is refined
+constexpr double kRestSeconds = 0.15, kSmoothSeconds = 0.4;  // without a change, before these refinements
+// With four samples per pixel. If frames take longer, the window would not answer for too long.
+constexpr double kSmoothScale = 2.0, kMostSmoothMs = 150.0;
+constexpr double kMostSmoothPixels = 3e7;  // about those of a display of 3840x2160
 constexpr double kNoPictureSeconds = 0.002;
 // Share of the distance to the centre, so that the near plane is nearer than usual if the camera is close.
 constexpr double kNearShare = 0.05;
@@ -49,8 +52,24 @@ double ScenePictures::secondsToNext() const {
                (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()));
     };
     if (std::ranges::any_of(both(), changes)) { return kNoPictureSeconds; }
-    return is_refined_ ? std::numeric_limits<double>::infinity()
-                       : std::max(kRestSeconds - secondsSince(changed_at_), 0.0);
+    return secondsToRefine().value_or(std::numeric_limits<double>::infinity());
+}
+
+bool ScenePictures::smooths() const {
+    const SmoothAtRest smooth = state_.settings().window_smooth;
+    const double resolution = kSmoothScale * state_.settings().resolution_scale,
+                 pixels = resolution * resolution * drawn_.part_px.x * drawn_.part_px.y;
+    if (smooth == SmoothAtRest::kOff || resolution > kSmoothScale || pixels > kMostSmoothPixels) {
+        return false;
+    }
+    const double ms = kSmoothScale * kSmoothScale * shown_.lastFrame().gpu_total_ms;
+    return smooth == SmoothAtRest::kOn || (!context_.isSoftware() && ms < kMostSmoothMs);
+}
+
+std::optional<double> ScenePictures::secondsToRefine() const {
+    if (refinement_ == Refinement::kSmooth || (refinement_ == Refinement::kFull && !smooths())) { return {}; }
+    const double rest = refinement_ == Refinement::kMoving ? kRestSeconds : kSmoothSeconds;
+    return std::max(rest - secondsSince(changed_at_), 0.0);
 }
 
 bool ScenePictures::draw(const OrbitCamera& camera, const WindowLayout& layout, double seconds,
@@ -71,15 +90,20 @@ bool ScenePictures::draw(const OrbitCamera& camera, const WindowLayout& layout, 
     sight.settings.page = {};  // these change nothing in the scene
     sight.settings.panel = {};
     if (!(sight == drawn_)) {
+        const bool is_as_large = sight.part_px == drawn_.part_px &&
+                                 sight.settings.resolution_scale == drawn_.settings.resolution_scale;
+        if (!is_as_large) { most_scale_ = 1.0; }
         drawn_ = std::move(sight);
-        is_refined_ = false;
+        refinement_ = Refinement::kMoving;
         changed_at_ = Clock::now();
         render(layout, motion_.scale(), false, refresh_hz);
         return true;
     }
-    if (is_refined_ || (secondsSince(changed_at_) < kRestSeconds && !is_file_asked_)) { return false; }
-    is_refined_ = true;
-    render(layout, 1.0, true, refresh_hz);
+    const std::optional<double> seconds_left = secondsToRefine();
+    if (!seconds_left || (*seconds_left > 0.0 && !is_file_asked_)) { return false; }
+    const bool is_full = refinement_ == Refinement::kFull;
+    refinement_ = is_full ? Refinement::kSmooth : Refinement::kFull;
+    render(layout, is_full ? kSmoothScale : 1.0, true, refresh_hz);
     if (std::exchange(is_file_asked_, false)) { writeFile(layout); }
     return true;
 }
@@ -91,7 +115,8 @@ void ScenePictures::render(const WindowLayout& layout, double scale, bool at_res
                         glm::uvec2(16));
     };
     FrameSettings settings = settingsFor(at_rest);
-    settings.most_px = sizeAt(1.0);
+    most_scale_ = std::max(most_scale_, scale);
+    settings.most_px = sizeAt(most_scale_);
     settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale * resolution));
     std::vector<Eye> eyes = eyesOf(drawn_.camera, layout.sight, sizeAt(scale));
     shown_.render(scenes_.frame(), eyes, settings, layout.sight.stereo, at_rest);

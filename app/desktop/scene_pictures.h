@@ -1,5 +1,5 @@
-// When the scene is drawn for the window, and how: coarsely while something changes, in full once it rests;
-// and what is seen in its picture.
+// When the scene is drawn for the window, and how: coarsely while something changes, in full once it rests,
+// then with four samples per pixel; and what is seen in its picture.
 #pragma once
 
 #include "app/desktop/curtain.h"
@@ -10,6 +10,7 @@
 #include "app/view/settings/view_state.h"
 
 #include <chrono>
+#include <optional>
 
 namespace binosplat {
 
@@ -39,7 +40,7 @@ public:
     // The time until then, if nothing else changes.
     [[nodiscard]] double secondsToNext() const;
     // Also has one written to a file, once it is drawn in full.
-    void askForFile() { is_file_asked_ = true, is_refined_ = false; }
+    void askForFile() { is_file_asked_ = true, refinement_ = Refinement::kMoving; }
     // Of the last one, for the list of scenes.
     void keep(SceneNotes& notes);
 
@@ -63,6 +64,12 @@ private:
         bool operator==(const Sight&) const = default;
     };
 
+    enum class Refinement { kMoving, kFull, kSmooth };
+
+    // Whether it becomes smooth at rest.
+    [[nodiscard]] bool smooths() const;
+    // Until the next refinement, if nothing changes; empty: this is the last one.
+    [[nodiscard]] std::optional<double> secondsToRefine() const;
     [[nodiscard]] std::array<LoadedScene*, 2> both() const { return {scenes_.get(), scenes_.other()}; }
     void render(const WindowLayout& layout, double scale, bool at_rest, double refresh_hz);
     void writeFile(const WindowLayout& layout);
@@ -79,7 +86,9 @@ private:
     std::optional<DesktopPictures> other_;  // from the first comparison on
     MotionScale motion_;
     Sight drawn_;
-    bool is_refined_ = true, is_file_asked_ = false;
+    Refinement refinement_ = Refinement::kSmooth;
+    bool is_file_asked_ = false;
+    double most_scale_ = 1.0;  // of pictures of this size so far: frames keep the memory for it
     std::uint64_t moment_ = 0;
     Clock::time_point changed_at_{};
 };

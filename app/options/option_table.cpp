@@ -113,8 +113,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
           "contrast is low) are rendered first, within --budget; 0: off"},
          field::number<kStereo, kWarp, &StereoSettings::error_bound_db>(0.0, 60.0)},
         {{"move-cost", "stereo", kTried, "PAIRS",
-          "the cost of reprojecting a tile. predicted mode: tiles that at most this many splats touch are "
-          "rendered. temporal mode: frames in which reprojecting saves fewer per tile are rendered in full"},
+          "predicted mode: tiles that at most this many splats touch are rendered, not reprojected; temporal "
+          "mode: so are frames in which reprojecting saves fewer pairs per tile"},
          field::count<kStereo, kWarp, &StereoSettings::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "the depth by which a pixel is reprojected: D, D/A or A/I"},
          field::named<kStereo, kWarp, &StereoSettings::depth_choice>({"sum", "mean", "inverse"})},

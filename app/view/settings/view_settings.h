@@ -21,6 +21,8 @@ inline glm::dvec3 colourOf(Backdrop backdrop) {
 enum class FirstStepsShown { kOnce, kAlways, kNever };
 // What a window without a headset shows of the two eyes.
 enum class WindowStereo { kMono, kSideBySide, kCrossEyed, kTopBottom, kAnaglyph };
+// Whether a window's picture gets four samples per pixel once nothing changes; kAuto: on a quick GPU.
+enum class SmoothAtRest { kAuto, kOff, kOn };
 
 struct ViewSettings {
     StereoOptions stereo;
@@ -50,6 +52,7 @@ struct ViewSettings {
     // Of a window without a headset, see WindowSight.
     WindowStereo window_stereo = WindowStereo::kMono;
     double window_eyes = 0.033, window_plane = 1.0;
+    SmoothAtRest window_smooth = SmoothAtRest::kAuto;
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
     std::optional<double> metres_per_unit;      // of the scene, if somebody has measured it
 

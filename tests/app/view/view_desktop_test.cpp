@@ -123,6 +123,36 @@ TEST_CASE("a window whose surface is lost goes on; each kind of stereo shows eac
     }
 }
 
+TEST_CASE_FIXTURE(AtWork, "at rest each pixel of the window becomes the mean of four, if that is wanted") {
+    if (!haveScreen()) { return; }
+    work.write("smooth.toml", "[view]\nwindow-smooth = \"on\"\n");
+    Window window(work, "--desktop --config smooth.toml --hide-panel", "", "builtin:atelier");
+    const auto drawn = [&](const std::string& size, const std::string& out) {
+        work.go("render builtin:atelier --mode mono --order distance --fov-x 60 --size " + size + " --out " +
+                out);
+        return readPicture(work.path / out / "mono.png");
+    };
+    const Image once = drawn("1280x720", "once"), fine = drawn("2560x1440", "fine");
+    Image mean = once;
+    const std::size_t row = std::size_t{3} * fine.size_px.x;
+    for (std::size_t i = 0; i < mean.values.size(); ++i) {
+        const std::size_t y = i / (row / 2), x = i % (row / 2);
+        const float* const first = &fine.values[2 * y * row + 2 * (x - x % 3) + x % 3];
+        mean.values[i] = 0.25f * (first[0] + first[3] + first[row] + first[row + 3]);
+    }
+    // With bytes rounded twice, two pictures that are alike agree to 56 dB.
+    const double smooth_db = compare(once, mean).psnrDb() + 4.0;
+    double psnr_db = 0.0;
+    for (int look = 0; look < 200 && psnr_db < smooth_db; ++look) {
+        psnr_db = compare(Window::shown(), mean).psnrDb();
+    }
+    CHECK(psnr_db >= smooth_db);
+    // A file has a sample per pixel, whatever the window shows.
+    window.rest();
+    CHECK(compare(readPicture(window.picture()), once).psnrDb() > 45.0);
+    window.end();
+}
+
 TEST_CASE_FIXTURE(AtWork, "a runtime that hangs keeps no window from opening; a hidden one draws later") {
     if (!haveScreen()) { return; }
     work.go("scene one-splat --out one.ply");
