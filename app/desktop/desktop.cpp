@@ -137,7 +137,9 @@ private:
         if (event.kind == Kind::kDrop && !place_.takeViewpoints(event.path)) {
             scenes_.begin(event.path, event.second);
         }
-        if (event.kind == Kind::kKey) { follow(panel_.requestsOf(event.code, state_.settings())); }
+        if (event.kind == Kind::kKey) {
+            follow(requestsOf(event.code, state_.settings(), panel_.picture().status()));
+        }
     }
 
     void followCurtain() {

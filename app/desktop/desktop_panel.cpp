@@ -50,8 +50,7 @@ void DesktopPanel::toggleHelp(ViewState& state) {
     log_.say(helps ? "help" : "no help");
 }
 
-PanelRequests DesktopPanel::requestsOf(int key, const ViewSettings& settings) {
-    const PanelStatus& now = picture_.status();
+PanelRequests requestsOf(int key, const ViewSettings& settings, const PanelStatus& now) {
     PanelRequests requests;
     requests.settings = settings;
     const auto at = std::ranges::find(kRequestKeys, key, [](const auto& of) { return of.first; });

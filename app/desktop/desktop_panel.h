@@ -9,6 +9,9 @@
 
 namespace binosplat {
 
+// What a key asks for, if it does what buttons of a panel with this status do; `key` is GLFW's.
+[[nodiscard]] PanelRequests requestsOf(int key, const ViewSettings& settings, const PanelStatus& now);
+
 class DesktopPanel {
 public:
     // Both must outlive this.
@@ -20,8 +23,6 @@ public:
     void say(const std::string& message);
     void toggleHelp(ViewState& state);
     void setFillsScreen(bool fills_screen) { picture_.status().window->fills_screen = fills_screen; }
-    // What a key asks for, if it does what buttons do; `key` is GLFW's.
-    [[nodiscard]] PanelRequests requestsOf(int key, const ViewSettings& settings);
 
     // True if an event is meant for the panel. After one of the mouse it is to be laid out before the next
     // one, since a click may begin and end between two pictures. `part`: of the window, where it is;
