@@ -51,6 +51,14 @@ GLFWmonitor* monitorOf(GLFWwindow* window) {
 
 }  // namespace
 
+HeldMotion motionOfKeys(const std::function<bool(int key)>& is_held) {
+    const auto held = [&](int key) { return is_held(key) ? 1.0 : 0.0; };
+    return {{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_Q) - held(GLFW_KEY_E),
+             held(GLFW_KEY_W) - held(GLFW_KEY_S)},
+            {held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT), held(GLFW_KEY_UP) - held(GLFW_KEY_DOWN)},
+            is_held(GLFW_KEY_LEFT_SHIFT) || is_held(GLFW_KEY_RIGHT_SHIFT)};
+}
+
 DesktopWindow::DesktopWindow(const Context& context)
     : context_(context), window_(nullptr, glfwDestroyWindow), sideways_(nullptr, glfwDestroyCursor) {
     const auto require = [](bool condition, const std::string& trouble) {
@@ -144,11 +152,7 @@ bool DesktopWindow::hasGamepad() const {
 }
 
 HeldMotion DesktopWindow::heldMotion() const {
-    const auto held = [&](int key) { return glfwGetKey(window_.get(), key) == GLFW_PRESS ? 1.0 : 0.0; };
-    HeldMotion motion{{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_Q) - held(GLFW_KEY_E),
-                       held(GLFW_KEY_W) - held(GLFW_KEY_S)},
-                      {held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT), held(GLFW_KEY_UP) - held(GLFW_KEY_DOWN)},
-                      held(GLFW_KEY_LEFT_SHIFT) + held(GLFW_KEY_RIGHT_SHIFT) > 0.0};
+    HeldMotion motion = motionOfKeys([&](int key) { return isHeld(key); });
     if (GLFWgamepadstate pad{}; gamepadState(pad)) {
         const float* const axes = pad.axes;
         const HeldMotion held_there =

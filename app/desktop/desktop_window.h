@@ -28,6 +28,9 @@ struct DesktopEvent {
     [[nodiscard]] bool isLeft() const { return code == 0; }  // of a button
 };
 
+// What held keys (GLFW's) do.
+HeldMotion motionOfKeys(const std::function<bool(int key)>& is_held);
+
 class DesktopWindow {
 public:
     // Throws Error (exit code 3) if the device cannot show on the display.

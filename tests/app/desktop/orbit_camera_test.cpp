@@ -1,7 +1,11 @@
 // Facts about a window's camera and what its eyes see.
 #include "app/desktop/camera_mover.h"
 #include "app/desktop/desktop_pictures.h"
+#include "app/desktop/desktop_window.h"
 #include "tests/suite.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 SUITE(orbit_camera) {
 
@@ -75,6 +79,10 @@ TEST_CASE("keys and gamepads fly, four times as fast if asked; a stick near its 
     CHECK(these(held.fly == glm::dvec3(0.5, 1.0, 1.0), held.turn == glm::dvec2(-0.7, -0.8), held.fast) ==
           these(true, true, true));
     CHECK(motionOf({.right_trigger = 1.0}).fly.y == -1.0);
+    for (const int shift : {0, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT}) {
+        const HeldMotion keys = motionOfKeys([&](int key) { return key == GLFW_KEY_W || key == shift; });
+        CHECK(these(keys.fly == glm::dvec3(0.0, 0.0, 1.0), keys.fast) == these(true, shift != 0));
+    }
 }
 
 TEST_CASE("a way ends where it leads, the shorter way round; a new centre comes into the middle") {
