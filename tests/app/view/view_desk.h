@@ -57,6 +57,12 @@ public:
         rest();
         return point;
     }
+    // Where the camera is, while the panel shows the page View.
+    glm::dvec3 eye(const Workplace& work) {
+        click("Save", PanelPage::kView);
+        await("saved as ");
+        return placementAtWall(work).position;
+    }
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
         for (const std::string& does : dragOf(button, from, to)) { hands(does); }
     }

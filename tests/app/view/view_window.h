@@ -18,6 +18,10 @@ inline const glm::dvec2 kPanelInWindowPx(kEyePx* static_cast<double>(kPanelPx.x)
 
 inline bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xdotool", "xdotool"); }
 
+// The simulated headset without --simulate, for a script's name to follow.
+inline const std::string kRuntime = "XR_RUNTIME_JSON='" BINOSPLAT_BUILD "/bin/simulated_runtime.json' ",
+                         kScripted = kRuntime + "SIMULATED_OPENXR_SCRIPT=";
+
 // A shell command, run in a folder.
 class Program {
 public:

@@ -242,13 +242,15 @@ TEST_CASE("Escape, and the window's cross, end it while the headset is off, not 
     checkEnds(kGone, false);
 }
 
-TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
+TEST_CASE("Escape, and the window's cross, end the wait for a headset, simulated or not") {
     if (!haveScreen()) { return; }
     for (const bool by_cross : {false, true}) {
         CAPTURE(by_cross);
         const Workplace work;
         work.write("never.script", "no-headset-for 1000000\n");
-        Program program(work.path, viewOnDesk("builtin:slanted-wall --simulate never.script"));
+        const std::string simulated = viewOnDesk("builtin:slanted-wall --simulate never.script"),
+                          other = viewOnDesk("builtin:slanted-wall --headset-only").substr(3);
+        Program program(work.path, by_cross ? "env " + kScripted + "never.script " + other : simulated);
         program.await("has no headset yet");
         if (by_cross) {
             clickCross("^binosplat is waiting for a headset");
