@@ -111,6 +111,7 @@ private:
         LoadedScene* const scene = scenes_.get();
         if (scene == before) { return; }
         is_shown_ = false;
+        is_new_ = true;
         pictures_.forget();
         place_.show(scene);  // none, if it has made way for the next one
         if (scene != nullptr) { notes_.remember(scene->name, complaint); }
@@ -196,6 +197,10 @@ private:
             window_.show([this](vk::Image target, vk::Semaphore drawn) { compose(target).submit(drawn); });
         log_.frame += is_shown_ ? 1 : 0;
         pictures_without_scene_ += is_shown_ && scenes_.get() == nullptr ? 1 : 0;
+        const std::optional<glm::uvec2> size_px = pictures_.sizePx();
+        if (is_shown_ && size_px && std::exchange(is_new_, false)) {
+            log_.say(fmt::format("its first picture has {}x{} pixels", size_px->x, size_px->y));
+        }
     }
 
     Commands& compose(vk::Image target) {
@@ -231,6 +236,7 @@ private:
     ScenePictures pictures_;
     std::array<Commands, 2> commands_;  // that compose the window, taking turns
     bool is_shown_ = true;
+    bool is_new_ = false;  // no picture of the scene was shown yet
     std::uint64_t shown_panel_ = 0, scene_frames_ = 0, pictures_without_scene_ = 0;
     Clock::time_point last_step_ = Clock::now();
     SceneNotes notes_;

@@ -50,6 +50,10 @@ public:
     [[nodiscard]] std::optional<glm::dvec3> seenAt(const std::vector<EyePart>& parts,
                                                    const glm::dvec2& place_px) const;
     [[nodiscard]] const FrameResult& lastFrame() const { return shown_.lastFrame(); }
+    // What was rendered last for each eye; none before the scene's first picture.
+    [[nodiscard]] std::optional<glm::uvec2> sizePx() const {
+        return shown_.eyes().empty() ? std::nullopt : std::optional(shown_.eyes().front().size_px);
+    }
 
 private:
     using Clock = std::chrono::steady_clock;

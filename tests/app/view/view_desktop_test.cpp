@@ -1,7 +1,23 @@
 // Facts about the window without a headset: what mouse and keys do, what it shows, that it rests.
+#include "engine/builtin/procedural.h"
+#include "engine/files/ply.h"
 #include "tests/app/view/view_desk.h"
 
 SUITE(view_desktop) {
+
+// The fence, whose colours depend on the direction from which they are seen.
+void writeGlossyFence(const fs::path& file) {
+    constexpr std::size_t kValues = 48;  // of three bands
+    Scene fence = makeBuiltin("builtin:fence");
+    std::vector<float> sh(kValues * fence.size(), 0.1f);
+    for (std::size_t i = 0; i < fence.size(); ++i) {
+        std::copy_n(fence.sh.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                    sh.begin() + static_cast<std::ptrdiff_t>(kValues * i));
+    }
+    fence.sh = std::move(sh);
+    fence.sh_degree = 3;
+    writePly(fence, file.string());
+}
 
 TEST_CASE_FIXTURE(AtWork, "without a runtime the scene is in a window, as render draws it, and rests") {
     if (!haveScreen()) { return; }
@@ -10,17 +26,41 @@ TEST_CASE_FIXTURE(AtWork, "without a runtime the scene is in a window, as render
         withFaults("BINOSPLAT_FAULT_TRACE=trace.txt XR_RUNTIME_JSON=/nonexistent/runtime.json ", ""));
     CHECK(contains(window.said(), "\nthe scene is shown in a window; no headset: no OpenXR runtime found"));
 
+    // At first it is coarse.
+    const std::string first = window.await("its first picture has ");
+    glm::uvec2 first_px(0);
+    CHECK(std::sscanf(first.substr(first.find("has ")).c_str(), "has %ux%u", &first_px.x, &first_px.y) == 2);
+    CHECK(these(first_px.x == within(320, 640), first_px.y == within(180, 360)) == these(true, true));
+
     const glm::dvec2 place(500.0, 300.0), beside(620.0, 340.0);
     const glm::dvec3 start = window.seenAt(place);
     const auto fromStart = [&](const glm::dvec2& at) { return glm::distance(window.seenAt(at), start); };
     constexpr double kSomePixels = 0.06;
+    CHECK(std::abs(start.z - (4.0 + start.x)) < kSomePixels);  // on the wall
+    const glm::dvec3 eye = window.eye(work);
+    const auto hasMoved = [&] { return glm::distance(window.eye(work), eye) > 0.1; };
     window.drag(1, place, beside);
+    CHECK(hasMoved());
     CHECK(fromStart(place) < kSomePixels);  // orbits around it
     window.drag(3, place, beside);
     CHECK(fromStart(beside) < kSomePixels);  // moves with it
     hands(moveTo(place) + "click 4");
+    CHECK(hasMoved());
     CHECK(fromStart(place) < kSomePixels);  // zooms towards it
     CHECK(fromStart({400.0, 300.0}) > 0.5);
+
+    // The help is a list of keys on the panel.
+    const auto panelAfterHelp = [&] {
+        window.help();
+        window.rest();
+        return partOf(Window::shown(), {743, 0}, {1280, 672});
+    };
+    const Image with = panelAfterHelp(), without = panelAfterHelp();
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < with.values.size(); i += 3) {
+        differing += std::abs(with.values[i] - without.values[i]) > 0.2f ? 1 : 0;
+    }
+    CHECK(differing > 3000);
 
     // Hides the panel, which the help had brought up.
     hands("key Tab");
@@ -36,10 +76,11 @@ TEST_CASE_FIXTURE(AtWork, "without a runtime the scene is in a window, as render
     // Other input gives the device nothing to do, and the processor little. The answer to O is a sign that
     // all before it has been handled; for it, the device copies a picture of the scene that might be left.
     dialogDoes(work, "echo missing.ply");
+    const auto submitted = [&] { return std::ranges::count(work.bytesOf("trace.txt"), 's'); };
     const auto submissions = [&] {
         hands("key o");
         window.await("missing.ply");
-        return std::ranges::count(work.bytesOf("trace.txt"), 's');
+        return submitted();
     };
     const auto before = submissions();
     const double begin_s = window.processorSeconds();
@@ -49,6 +90,12 @@ TEST_CASE_FIXTURE(AtWork, "without a runtime the scene is in a window, as render
     CHECK(before > 0);
     CHECK(window.processorSeconds() - begin_s <
           0.5 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    // Without input there is less to do still.
+    const auto at_rest = submitted();
+    const double rest_s = window.processorSeconds();
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    CHECK(submitted() == at_rest);
+    CHECK(window.processorSeconds() - rest_s < 0.25);
     window.end();
 }
 
@@ -157,8 +204,7 @@ TEST_CASE_FIXTURE(AtWork, "a runtime that hangs keeps no window from opening; a 
     if (!haveScreen()) { return; }
     work.go("scene one-splat --out one.ply");
     Window window(work, "--hide-panel",
-                  withXrFaults("BINOSPLAT_XR_FAULT=xrCreateInstance:hang", "") +
-                      " XR_RUNTIME_JSON='" BINOSPLAT_BUILD "/bin/simulated_runtime.json' ");
+                  withXrFaults("BINOSPLAT_XR_FAULT=xrCreateInstance:hang", "") + " " + kRuntime);
     CHECK(contains(window.said(),
                    "the scene is shown in a window; no headset: the OpenXR runtime does not answer\n"));
     window.rest();
@@ -200,6 +246,7 @@ TEST_CASE_FIXTURE(AtWork, "the true size, a viewpoint's name and the panel's set
         window.click("Scenes", PanelPage::kView);
         window.await("panel-page");
         for (const char* number : {"1", "2"}) {
+            window.drag(3, one, other);
             window.click("Keep this one", PanelPage::kScenes);
             window.await("this viewpoint is kept");
             CHECK(contains(textIn(kept / "scenes/slanted-wall.viewpoints.json"),
@@ -221,13 +268,19 @@ TEST_CASE_FIXTURE(AtWork, "the true size, a viewpoint's name and the panel's set
     CHECK(readPicture(window.picture()).size_px == glm::uvec2(2560, 720));
     hands("key 2");
     window.await("viewpoint 2 of 2: door");
+    window.await("arrived");
+    const std::vector<View> places = keptPlaces(work);
+    REQUIRE(places.size() == 2);
+    CHECK(glm::distance(places[0].eye, places[1].eye) > 0.1);
+    window.help();  // with the panel
+    CHECK(glm::distance(window.eye(work), places[1].eye) < 1e-4);
     window.end();
 }
 
 TEST_CASE_FIXTURE(AtWork, "two scenes are beside a curtain, and a held key shows the other one whole") {
     if (!haveScreen()) { return; }
     work.go("scene one-splat --out one.ply");
-    work.go("scene fence --out fence.ply");
+    writeGlossyFence(work.path / "fence.ply");
     const std::string view = " --eye 0,0,-1 --look 0,0,3 --up 0,-1,0";
     const std::string drawing = view + " --mode mono --order distance --size 1280x720 --fov-x 60 --out ";
     const auto draw = [&](const std::string& scene, const std::string& name) {
@@ -236,6 +289,7 @@ TEST_CASE_FIXTURE(AtWork, "two scenes are beside a curtain, and a held key shows
     };
     const Image wall = draw("builtin:slanted-wall", "wall"), fence = draw("fence.ply", "fence");
     REQUIRE(compare(wall, fence).psnrDb() < 25.0);
+    REQUIRE(compare(draw("fence.ply --sh-degree 2", "dull"), fence).psnrDb() < 35.0);
     Window window(work, "--desktop --hide-panel --compare fence.ply" + view);
     window.await("compares builtin:slanted-wall with fence.ply");
     // Which part of the window is the one scene, and which is the other.
