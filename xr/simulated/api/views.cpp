@@ -27,17 +27,18 @@ bool hasInset(const Instance& instance) {
            instance.simulation->script.allowsExtension(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
 }
 
-// True if the program asks for insets that follow the gaze.
-bool movesInsets(const Instance& instance, const void* next) {
-    const auto* const asked =
-        findInChain<XrViewLocateFoveatedRenderingVARJO>(next, XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO);
+// True if the program asks for insets that follow the gaze, with this structure of the extension's.
+template <class Asked>
+bool movesInsets(const Instance& instance, const void* next, XrStructureType type) {
+    const auto* const asked = findInChain<Asked>(next, type);
     return asked != nullptr && instance.extensions.contains(XR_VARJO_FOVEATED_RENDERING_EXTENSION_NAME) &&
            asked->foveatedRenderingActive == XR_TRUE;
 }
 
-glm::uvec2 sizePxOf(const Script& script, XrViewConfigurationType type, std::size_t view) {
+glm::uvec2 sizePxOf(const Script& script, XrViewConfigurationType type, std::size_t view, bool moves) {
     if (type != kInset) { return script.size_px; }
-    return isInset(view) ? script.insetSizePx() : script.contextSizePx();
+    if (!isInset(view)) { return script.contextSizePx(); }
+    return moves ? script.inset.moving_px.value_or(script.insetSizePx()) : script.insetSizePx();
 }
 
 }  // namespace
@@ -93,7 +94,9 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
         if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return; }
         for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW_CONFIGURATION_VIEW); }
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::uvec2 size_px = sizePxOf(owner.simulation->script, viewConfigurationType, i);
+            const bool moves = movesInsets<XrFoveatedViewConfigurationViewVARJO>(
+                owner, views[i].next, XR_TYPE_FOVEATED_VIEW_CONFIGURATION_VIEW_VARJO);
+            const glm::uvec2 size_px = sizePxOf(owner.simulation->script, viewConfigurationType, i, moves);
             views[i].recommendedImageRectWidth = size_px.x;
             views[i].recommendedImageRectHeight = size_px.y;
             views[i].maxImageRectWidth = std::max(kMostViewPixels, size_px.x);
@@ -116,7 +119,8 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         const std::size_t count = countViews(info.viewConfigurationType);
         if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return; }
         for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW); }
-        owner.moves_insets = movesInsets(owner.instance, info.next);
+        owner.moves_insets = movesInsets<XrViewLocateFoveatedRenderingVARJO>(
+            owner.instance, info.next, XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO);
         const State state = owner.at(info.displayTime);
         const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
         for (std::size_t i = 0; i < count; ++i) {

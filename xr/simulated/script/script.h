@@ -132,6 +132,8 @@ struct InsetScript {
     double half_angle_rad = 20.0 * std::numbers::pi / 180.0;
     // The recommended sizes; none: as many pixels per degree as `size`, and half of `size`.
     std::optional<glm::uvec2> size_px, context_px;
+    // Where the program asks for insets that follow the gaze; none: the same.
+    std::optional<glm::uvec2> moving_px;
 };
 
 struct Script {

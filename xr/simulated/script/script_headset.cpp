@@ -72,7 +72,7 @@ void Parser::parseHeadsetLine(Words& words) {
     script_.cant_rad = {headset.canting_rad, headset.canting_rad};
     if (headset.inset) {
         script_.inset = {headset.inset->half_angle_rad, sizeOf(headset.inset->size_px),
-                         sizeOf(headset.inset->context_size_px)};
+                         sizeOf(headset.inset->context_size_px), std::nullopt};
     }
     for (const Side side : kSides) {
         const auto& [left_rad, right_rad, up_rad, down_rad] = headset.angles[side];
@@ -87,6 +87,7 @@ void Parser::parseInset(Words& words) {
         glm::radians(words.takeNumber("half of the inset's angle in degrees", 1.0, 85.0));
     if (words.takeIf("size")) { script_.inset.size_px = takeSize(words); }
     if (words.takeIf("context")) { script_.inset.context_px = takeSize(words); }
+    if (words.takeIf("moving")) { script_.inset.moving_px = takeSize(words); }
 }
 
 void Parser::parseBlendModes(Words& words) {

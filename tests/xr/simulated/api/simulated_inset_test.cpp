@@ -13,9 +13,11 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 using Views = std::vector<XrView>;
 
 // "32x32 32x32 24x24 24x24"
-std::string sizesOf(const std::string& script) {
-    const InstanceFixture made(script, kQuad);
-    const auto views = checkListOf(XrViewConfigurationView{XR_TYPE_VIEW_CONFIGURATION_VIEW},
+std::string sizesOf(const std::string& script, bool moves = false, const Extensions& extensions = kQuad) {
+    const InstanceFixture made(script, extensions);
+    XrFoveatedViewConfigurationViewVARJO follow{XR_TYPE_FOVEATED_VIEW_CONFIGURATION_VIEW_VARJO, nullptr,
+                                                XrBool32{moves}};
+    const auto views = checkListOf(XrViewConfigurationView{XR_TYPE_VIEW_CONFIGURATION_VIEW, &follow},
                                    xrEnumerateViewConfigurationViews, made.instance, made.system, kInset);
     REQUIRE(views.size() == 4);
     std::uint32_t count = 0;
@@ -124,6 +126,11 @@ TEST_CASE(
     CHECK(sizesOf("size 64 64\ninset 10") == "32x32 32x32 12x12 12x12");
     CHECK(sizesOf("size 64 64\ninset 10 size 50 40 context 20 30") == "20x30 20x30 50x40 50x40");
     CHECK(sizesOf("size 65 64\ninset 45") == "33x32 33x32 65x64 65x64");
+    // Those that are to follow the gaze may be of another size.
+    const std::string moving = "size 64 64\ninset 10 moving 20 16";
+    CHECK(sizesOf(moving, true) == "32x32 32x32 20x16 20x16");
+    CHECK(sizesOf(moving, false) == sizesOf("size 64 64\ninset 10", true));
+    CHECK(sizesOf(moving, true, {XR_VARJO_QUAD_VIEWS_EXTENSION_NAME}) == sizesOf(moving, false));
 }
 
 TEST_CASE("insets lie about the gaze, with the poses of their eyes, and stay in their views") {
