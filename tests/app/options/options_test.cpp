@@ -8,6 +8,8 @@
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
 
+#include <regex>
+
 SUITE(options) {
 
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
@@ -176,6 +178,29 @@ TEST_CASE_FIXTURE(AtWork, "splats go by depth or distance, as the options, the c
     CHECK(orderOf(file + " --order depth", Order::kDistance) == Order::kDepth);
     CHECK(view("--order distance").stereo.order == Order::kDistance);
     CHECK(parse<BenchOptions>("bench a --out b --orders").orders);
+}
+
+TEST_CASE("the help of view has its own rows and those it shares, and none that only other commands have") {
+    std::map<std::string, bool> is_of_view;
+    const auto addRows = [&](const auto& rows) {
+        for (const auto& row : rows) { is_of_view[row.text.key] |= (row.text.commands & kView) != 0; }
+    };
+    addRows(viewRows());
+    const std::size_t own = is_of_view.size();
+    addRows(runRows());
+    addRows(renderRows());
+    addRows(benchRows());
+    addRows(sceneRows());
+    addRows(convertRows());
+    addRows(compareRows());
+    CHECK(own >= 5);
+    const std::string help = std::get<HelpText>(parseLine("view --help")).text;
+    std::size_t others = 0;
+    for (const auto& [key, is_shown] : is_of_view) {
+        CHECK_MESSAGE(std::regex_search(help, std::regex("\n *--" + key + "\\b(?!-)")) == is_shown, key);
+        others += is_shown ? 0 : 1;
+    }
+    CHECK(others > 20);
 }
 
 TEST_CASE("half the resolution goes with foveation, and the headset has it unless it is told not to") {
