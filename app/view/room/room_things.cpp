@@ -12,7 +12,6 @@ namespace {
 // A controller of no particular make: a handle in the fist, and a knob in front of it.
 constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045,
                  kKnobMetres = 0.055;
-constexpr std::size_t kTexelsOfUpdate = 16384;  // that fit into one update of a command buffer
 // What goes on without, if the runtime fails.
 constexpr const char *kHands = "pictures of hands", *kArcs = "arcs",
                      *kMessages = "messages in front of the eyes";
@@ -20,7 +19,7 @@ constexpr const char *kHands = "pictures of hands", *kArcs = "arcs",
 }  // namespace
 
 RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format)
-    : troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
+    : troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)), hand_drawing_(layout_) {
     if (!troubles_.tryFor("rays, controllers and the vignette",
                           [&] { makeSheet(session, context, format); })) {
         sheet_ = {};
@@ -134,7 +133,7 @@ void RoomThings::chooseHand(const xr::Hand& hand, DrawnImage& image, const glm::
     const bool has_picture = hand.joints && image.texels.bytes() > 0;
     if (has_picture && troubles_.tryFor(kHands, [&] { image.now = image.images.acquire(); })) {
         const Strip place = handPicturePlace(*hand.joints, eye);
-        image.picture = drawHand(*hand.joints, place, eye, layout_);
+        hand_drawing_.draw(*hand.joints, place, eye, image.picture);
         quads_.push_back(
             {place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx, false, "a hand"});
         return;
@@ -158,10 +157,7 @@ void RoomThings::record(Commands& commands) {
     for (DrawnImage* image : drawnImages()) {
         if (!image->now) { continue; }
         const std::vector<std::uint32_t>& texels = image->picture.texels;
-        for (std::size_t from = 0; from < texels.size(); from += kTexelsOfUpdate) {
-            const std::size_t count = std::min(kTexelsOfUpdate, texels.size() - from);
-            commands.update(image->texels, &texels[from], count * sizeof texels[0], from * sizeof texels[0]);
-        }
+        commands.update(image->texels, texels.data(), texels.size() * sizeof texels[0], 0);
         commands.copyToImage(image->texels, image->now, image->picture.size_px,
                              vk::ImageAspectFlagBits::eColor);
     }

@@ -74,6 +74,7 @@ private:
     xr::Troubles& troubles_;
     TexelLayout layout_;
     xr::Swapchain sheet_;  // none: nothing is drawn from it
+    HandDrawing hand_drawing_;
     std::array<DrawnImage, 2> hands_;
     DrawnImage arc_;
     DrawnImage message_;

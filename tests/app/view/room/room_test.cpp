@@ -30,7 +30,8 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
     const glm::dvec3 eye(0.0), palm(0.1, 0.2, 0.6);
     const xr::HandJoints joints = flatHand(palm);
     const Strip place = handPicturePlace(joints, eye);
-    const TexelPicture picture = drawHand(joints, place, eye, {false, false});
+    TexelPicture picture;
+    HandDrawing({false, false}).draw(joints, place, eye, picture);
     REQUIRE(picture.texels.size() == std::size_t{kHandPicturePx.x} * kHandPicturePx.y);
     // The palm is in the middle; each joint appears where its line of sight meets the picture.
     CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
@@ -41,6 +42,18 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
         const glm::dvec2 at = (glm::dvec2(hit) / place.size_m + 0.5) * glm::dvec2(kHandPicturePx);
         CHECK(alphaAt(picture, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) == 1.0);
     }
+    // At arm's length a degree has eight texels or more, and every border goes over two of them at least.
+    CHECK(kHandPicturePx.x > 8.0 * glm::degrees(2.0 * std::atan(0.5 * place.size_m.x / 0.6)));
+    double steepest = 0.0;
+    for (std::uint32_t y = 0; y + 1 < kHandPicturePx.y; ++y) {
+        for (std::uint32_t x = 0; x + 1 < kHandPicturePx.x; ++x) {
+            for (const auto& [right, down] : {std::pair(1u, 0u), std::pair(0u, 1u)}) {
+                const double step = alphaAt(picture, x, y) - alphaAt(picture, x + right, y + down);
+                steepest = std::max(steepest, std::abs(step));
+            }
+        }
+    }
+    CHECK(steepest == between(0.5, 0.75));
     for (const std::uint32_t border : {0u, kHandPicturePx.x - 1}) {
         CHECK(these(alphaAt(picture, border, kHandPicturePx.y / 2),
                     alphaAt(picture, kHandPicturePx.x / 2, border)) == these(0.0, 0.0));
