@@ -1,8 +1,12 @@
-// Facts about what hangs in the room: how hands and other pictures are drawn.
+// Facts about what hangs in the room: how hands and other pictures are drawn, and when the view is dark.
+#include "app/view/placement/placement.h"
 #include "app/view/room/arc_picture.h"
+#include "app/view/room/fade.h"
 #include "app/view/room/hand_picture.h"
 #include "app/view/room/panel_in_room.h"
 #include "app/view/room/sprites.h"
+#include "app/view/scenes/viewpoints.h"
+#include "app/view/wearer/sticks.h"
 #include "tests/suite.h"
 
 SUITE(room) {
@@ -136,6 +140,44 @@ TEST_CASE("a panel out of sight comes before the eyes after a while, one that is
     look(2.0, 10);
     const glm::dvec3 ahead(std::sin(2.0), 0.0, std::cos(2.0));
     CHECK(glm::dot(glm::normalize(panel.roomFromPanel().position), ahead) > 0.8);
+}
+
+TEST_CASE("a jump begins in the dark, which is gone after 0.3 s; a step and a turn by 30 degrees do not") {
+    const Pose head{glm::angleAxis(0.4, glm::dvec3(0.0, 1.0, 0.0)), {0.5, -0.2, 2.0}};
+    const View elsewhere{{4.0, 1.0, -2.0}, {4.0, 1.0, 3.0}, {0.0, -1.0, 0.0}, 60.0};
+    const Similarity start{{1.0, 0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}, 2.5};
+    Fade fade;
+    const auto darknessAfter = [&](const Similarity& next, bool is_new = false) {
+        fade = {};
+        fade.update(start, head, false, 0.01);
+        CHECK(fade.darkness() == 0.0);  // the first view
+        fade.update(next, head, is_new, 0.01);
+        return fade.darkness();
+    };
+    for (const double side : {-1.0, 1.0}) {
+        CAPTURE(side);
+        // A teleport, a turn around, and a growth of the scene, or a shrinking.
+        for (const Similarity& next :
+             {movedBy(start, {0.0, 0.0, 2.0 * side}), turnedBy(start, 1.5 * side, head.position),
+              grownBy(start, std::pow(2.0, side), head.position)}) {
+            CHECK(darknessAfter(next) == 1.0);
+        }
+        // A stick's turn, 15 cm of its walk, and a press of Larger or Smaller.
+        for (const Similarity& next :
+             {turnedBy(start, kTurnRadians * side, head.position), movedBy(start, {0.15 * side, 0.0, 0.0}),
+              grownBy(start, std::pow(1.25, side), head.position)}) {
+            CHECK(darknessAfter(next) == 0.0);
+        }
+    }
+    CHECK(darknessAfter(start) == 0.0);
+    CHECK(darknessAfter(start, /*is_new*/ true) == 1.0);  // another scene
+    // A viewpoint of the scene; then it brightens evenly.
+    const Similarity viewpoint = placedAt(elsewhere, start, head);
+    CHECK(darknessAfter(viewpoint) == 1.0);
+    for (const double left : {2.0 / 3.0, 1.0 / 3.0, 0.0}) {
+        fade.update(viewpoint, head, false, 0.1);
+        CHECK(fade.darkness() == doctest::Approx(left));
+    }
 }
 
 TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of their image") {
