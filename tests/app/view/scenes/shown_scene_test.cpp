@@ -90,8 +90,12 @@ TEST_CASE_FIXTURE(Shown, "a place belongs to its scene: others start at their ow
     CHECK(same(startOf("builtin:fence", options), other));
     ViewSettings moved = state.withPlacement();
     moved.scene_from_room->position += glm::dvec3(1.0, 2.0, 3.0);
+    moved.metres_per_unit = 0.25;
+    CHECK_FALSE(scenes.get()->measured.has_value());
     for (const char* scene : {"builtin:fence", "builtin:step-edge"}) { (void)saveViewSettings(scene, moved); }
     CHECK(same(startOf("builtin:fence", options), *moved.scene_from_room));
+    show(scenes, "builtin:fence");
+    CHECK(scenes.get()->measured == 0.25);
     CHECK(same(startOf("builtin:step-edge", options), given));
 }
 
