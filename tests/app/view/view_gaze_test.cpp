@@ -134,19 +134,25 @@ TEST_CASE_FIXTURE(AtWork, "with foveation each eye has an inset, as good as the 
     CHECK(viewsOf(runInset("extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
 }
 
-TEST_CASE_FIXTURE(AtWork, "the runtime moves an inset with the gaze only where the wearer lets it") {
-    const std::string script = "rate 50\nsize 64 64\ninset 20\nframes none\ngaze 0 15 0\nat 0.3 exit\n";
-    for (const bool follows : {false, true}) {
-        CAPTURE(follows);
-        const std::string keys =
-            fmt::format("[stereo]\nfoveation = 20\n[view]\neye-tracking = {}\n", follows);
+TEST_CASE_FIXTURE(AtWork, "an inset follows the gaze only where the wearer lets it and the headset can") {
+    const std::string script =
+        "rate 50\nsize 64 64\ninset 20 size 40 40 moving 24 20\nframes none\ngaze 0 15 0\nat 0.3 exit\n";
+    for (const auto& [line, asked, follows] :
+         {std::tuple("", false, false), std::tuple("", true, true),
+          std::tuple("eye-tracking off\n", true, false),
+          std::tuple("extension XR_VARJO_foveated_rendering off\n", true, false)}) {
+        CAPTURE(line);
+        const std::string keys = fmt::format("[stereo]\nfoveation = 20\n[view]\neye-tracking = {}\n", asked);
         const ViewRun run =
-            runClean(work, script,
+            runClean(work, line + script,
                      "builtin:one-splat --load-first --hide-panel --hide-hands" + withConfig(work, keys));
         const std::size_t frame = run.frames.size() - 4;
         REQUIRE(viewsOf(run, frame) == 4);
         const double left_rad = run.view(frame, 2).at("fov").at("left").get<double>();
         CHECK(left_rad == doctest::Approx(glm::radians(follows ? -35.0 : -20.0)).epsilon(1e-3));
+        // In the size that the runtime wants for that.
+        const auto rect = run.view(frame, 2).at("rect").get<std::array<int, 4>>();
+        CHECK(these(rect[2], rect[3]) == (follows ? these(24, 20) : these(40, 40)));
     }
 }
 
