@@ -164,6 +164,51 @@ TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene wh
     }
 }
 
+TEST_CASE_FIXTURE(AtWork, "what was cropped to a sphere stands in the room, which shows all around it") {
+    // Of the wall z = 4 + x, the disc of radius 1 about (0, 0, 4): here a quarter of a metre, a metre away.
+    constexpr double kUnitsPerMetre = 4.0;
+    constexpr glm::dvec3 kMiddle(0.0, 0.0, 4.0);
+    const glm::vec3 room(0.9f, 0.1f, 0.9f);
+    work.go("convert builtin:slanted-wall disc.ply --crop 0,0,4,1");
+    const ViewRun run = runClean(
+        work,
+        "rate 50\nsize 128 128\nframes from 12 to 12\nblend-modes opaque alpha-blend\nroom-colour 0.9 0.1 "
+        "0.9\n"
+        "at 0.3 exit\n",
+        "disc.ply --load-first --mode two-pass --hide-panel --hide-hands --metres-per-unit 0.25 --eye 0,0,0 "
+        "--look 0,0,4 --up 0,-1,0" +
+            withConfig(work, "[view]\npassthrough = true\n"));
+    const auto inScene = [](const glm::dvec3& v) { return glm::dvec3(v.x, -v.y, -v.z); };
+    for (const int side : {kLeft, kRight}) {
+        CAPTURE(side);
+        const Image seen = run.eye(12, side);
+        const LoggedEye eye = run.loggedEye(12, static_cast<std::size_t>(side));
+        const glm::dvec3 from = kUnitsPerMetre * inScene(eye.position - glm::dvec3(0.0, 1.6, 0.0));
+        std::size_t solid = 0, not_solid = 0, open = 0, not_open = 0;
+        for (std::uint32_t y = 0; y < seen.size_px.y; ++y) {
+            for (std::uint32_t x = 0; x < seen.size_px.x; ++x) {
+                const glm::dvec2 share = glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(seen.size_px);
+                const glm::dvec3 along =
+                    inScene(eye.orientation * glm::dvec3(glm::mix(eye.left, eye.right, share.x),
+                                                         glm::mix(eye.up, eye.down, share.y), -1.0));
+                const glm::dvec3 meets = from + (4.0 + from.x - from.z) / (along.z - along.x) * along;
+                const double radius = glm::distance(meets, kMiddle);
+                const glm::vec3 colour = colourOf(seen, x, y);
+                const glm::vec3 wall(0.5 + 0.15 * std::sqrt(2.0) * meets.x, 0.5 + 0.15 * meets.y, 0.5);
+                // The outermost splats reach over the sphere.
+                if (along.z <= along.x || radius > 1.3) {
+                    ++(glm::distance(colour, room) < 0.01f ? open : not_open);
+                } else if (radius < 0.8) {
+                    ++(glm::distance(colour, wall) < 0.05f ? solid : not_solid);
+                }
+            }
+        }
+        CHECK(these(not_open, not_solid) == these(0u, 0u));
+        CHECK(open > 10000);
+        CHECK(solid > 200);
+    }
+}
+
 TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no end") {
     fs::create_directories(work.base / "config");
     work.write("../config/user-dirs.dirs", "XDG_PICTURES_DIR=\"/proc/no-such-folder\"\n");
