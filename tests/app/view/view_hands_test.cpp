@@ -86,7 +86,7 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
         acts.wait(0.05).hold(menu, 0.02).wait(0.05).hold(menu, 0.02).wait(0.055);
     }
     // Buttons of other controllers are pressed before the right one.
-    std::vector<double> clicks, lifts;
+    std::vector<double> clicks, lifts, palms;
     const auto take = [&](const std::string& profile, const std::string& other, const std::string& click,
                           const std::string& widget) {
         acts.at("profile " + profile).wait(0.05).point(onMethod(widget)).press("right " + other);
@@ -103,6 +103,10 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
         acts.right(highUp(acts.panel), 0.1);
         lifts.push_back(acts.look(0.05));
         acts.point(kMiddle).wait(0.2);
+        // With the palm turned to the eyes, a pinch hides the panel, and shows it.
+        acts.left("position -0.2 1.4 -0.4 look 0.694 1.4 -0.847").wait(0.03);
+        for (int i = 0; i < 2; ++i) { palms.push_back(acts.press("left " + std::string(click)).look(0.02)); }
+        acts.left(kLeftDown);
     }
     const double bare_end = acts.now_s;
     take("oculus/touch_controller", "aim_activate_ext", "trigger", "right");
@@ -118,6 +122,11 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
     const std::size_t bare = run.frameAt(bare_begin) + 1;
     CHECK(pulses(run, bare, run.frameAt(bare_end) - bare) == 0);
     for (const double lifted_s : lifts) { checkLifted(run, lifted_s); }
+    REQUIRE(palms.size() == 4);
+    for (std::size_t i = 0; i < palms.size(); ++i) {
+        CAPTURE(i);
+        CHECK(run.panels(run.frameAt(palms[i])).size() == i % 2);
+    }
     const std::vector<std::string> changes = run.lines("dominant = ");
     INFO(run.outcome.output);
     REQUIRE(changes.size() == 3);
@@ -316,6 +325,7 @@ TEST_CASE_FIXTURE(AtWork, "controllers are drawn where grips are; one teleports 
     CHECK(pieces(by_stick).size() == kArcPieces);
     CHECK(run.beforeEyes(run.frameAt(by_stick)).empty());
     CHECK(these(pieces(there).size(), countSeen(run, there, kTarget)) == these(0, 0));
+    CHECK(run.beforeEyes(run.frameAt(there)).size() == 1);  // the dark after a jump
     const auto targetAt = [&](double seconds) {
         const auto found = run.quadsAsWide(run.frameAt(seconds), kTarget);
         REQUIRE(found.size() == 1);
@@ -346,6 +356,7 @@ TEST_CASE_FIXTURE(AtWork,
     acts.wait(0.2).click(keep, pinch).wait(0.1);
     const ViewRun run = runClean(work, acts, kScene + kAtWall + withConfig(work, kScenesPage));
     CHECK(these(countSeen(run, throws, kTarget), countSeen(run, pulled, kTarget)) == these(1, 0));
+    CHECK(run.beforeEyes(run.frameAt(pulled)).empty());  // no dark after a turn
     const auto kept = keptPlaces(work);
     REQUIRE(kept.size() == 3);
     // To where the arc met the floor, ahead; then by 30 degrees to the left, on the spot.
