@@ -104,6 +104,53 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     checkPage("Help", Page::kHelp, {Flag("Leave", &Asked::quit)});
 }
 
+// What covers this place in what was drawn last: red, green and blue, from 0 to 1.
+glm::dvec3 drawnAt(const glm::dvec2& place) {
+    glm::dvec3 colour(0.0);
+    const ImDrawData& drawn = *ImGui::GetDrawData();
+    for (int l = 0; l < drawn.CmdListsCount; ++l) {
+        const ImDrawList& list = *drawn.CmdLists[l];
+        for (int i = 0; i + 2 < list.IdxBuffer.Size; i += 3) {
+            std::array<glm::dvec2, 3> corners{};
+            for (int k = 0; k < 3; ++k) {
+                const ImVec2 at = list.VtxBuffer[list.IdxBuffer[i + k]].pos;
+                corners[static_cast<std::size_t>(k)] = {at.x, at.y};
+            }
+            std::array<double, 3> turns{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const glm::dvec2 side = corners[(k + 1) % 3] - corners[k], to = place - corners[k];
+                turns[k] = side.x * to.y - side.y * to.x;
+            }
+            const ImVec4 seen = ImGui::ColorConvertU32ToFloat4(list.VtxBuffer[list.IdxBuffer[i]].col);
+            const auto [least, most] = std::ranges::minmax(turns);
+            if (least * most > 0.0 && seen.w == 1.0f) { colour = {seen.x, seen.y, seen.z}; }
+        }
+    }
+    return colour;
+}
+
+TEST_CASE_FIXTURE(PanelSketch,
+                  "a button is brighter under the ray, yellow while pressed, and blue if chosen") {
+    draw();
+    click("Sharp");
+    glm::dvec2 place = draw().places.at("Fast"), chosen = draw().places.at("Sharp");
+    for (glm::dvec2* at : {&place, &chosen}) { at->y += 0.4 * kLargeTargetPx; }  // below the name
+    const auto lookAt = [&](bool hovered, bool pressed) {
+        draw(hovered ? &place : nullptr, pressed);
+        return drawnAt(place + glm::dvec2(60.0, 0.0));  // beside the dot of the pointer
+    };
+    const glm::dvec3 rests = lookAt(false, false), hovered = lookAt(true, false),
+                     pressed = lookAt(true, true), blue = drawnAt(chosen);
+    const auto sum = [](const glm::dvec3& colour) { return colour.r + colour.g + colour.b; };
+    CHECK(sum(hovered) > sum(rests) + 0.3);
+    CHECK(std::min(pressed.r, pressed.g) > pressed.b + 0.3);
+    for (const glm::dvec3& grey : {rests, hovered}) {
+        CHECK(grey.b > grey.r);
+        CHECK(grey.b - grey.r < 0.2);
+    }
+    CHECK(blue.b > blue.r + 0.5);
+}
+
 TEST_CASE_FIXTURE(PanelSketch, "what the panel asks for is written with its keys or a keyboard") {
     using What = TextEntry::What;
     TextEntry entry;
@@ -304,6 +351,18 @@ TEST_CASE_FIXTURE(PanelSketch,
     }
     click("Turn smoothly");
     CHECK(settings.smooth_turn);
+    status.can_pass_through = true;
+    using Box = std::pair<const char*, bool ViewSettings::*>;
+    for (const auto& [name, box] :
+         {Box("On ground", &ViewSettings::follow_ground), Box("Two-handed tilt", &ViewSettings::tilt),
+          Box("Vignette", &ViewSettings::vignette), Box("Hands", &ViewSettings::hands),
+          Box("Passthrough", &ViewSettings::passthrough),
+          Box("Both eyes", &ViewSettings::picture_both_eyes)}) {
+        for (const bool toggled : {!(settings.*box), settings.*box}) {
+            click(name);
+            CHECK_MESSAGE(settings.*box == toggled, name);
+        }
+    }
     click("Grey");
     CHECK(settings.backdrop == Backdrop::kGrey);
     // A second click on the chosen quality leaves the settings as the page of methods has them.
