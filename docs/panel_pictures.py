@@ -24,6 +24,8 @@ NEXT_SCENE = (
 )
 # Pulls the trigger on the button of another page; x and z of where that is.
 PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.765 {1}\npress right trigger 4 7\n" + LEFT_AWAY
+# Holds the trigger on Recentre.
+PRESSED = "controller right 0 position 0.2 1.2 -0.35 look -0.609 1.619 -0.834\npress right trigger 4 400\n" + LEFT_AWAY
 STATES = {
     "scenes": ("room2.ply --load-first", LAST + PAGE.format(-0.535, -0.887)),
     "method": ("room2.ply --load-first", LAST + PAGE.format(-0.447, -0.931)),
@@ -35,6 +37,7 @@ STATES = {
     "other": ("builtin:fence --load-first", LAST + "at 3 should-render off\n"),
     "gone": ("builtin:fence --load-first", LAST + "no-headset-for 100000 after-loss\nat 3 lose-session\n"),
     "replaced": ("builtin:fence --load-first", LAST + "at 12 lose-session\n"),
+    "pressed": ("builtin:fence --load-first", LAST + PRESSED),
     "beaten": ("builtin:fence --load-first --config view.toml", "rate 90\nsize 1000 1000\nframes none\n"),
     "held": ("builtin:one-splat --load-first --config view.toml", "rate 11\nsize 1000 1000\nframes none\n"),
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),

@@ -143,6 +143,22 @@ TEST_CASE_FIXTURE(test::AtWork, "fish completes what is typed, and zsh can read 
     CHECK(these(zsh.exit_code, zsh.errors) == these(0, ""));
 }
 
+TEST_CASE_FIXTURE(test::AtWork, "groff shows the man page, with every command and every option of it") {
+    if (!test::isInstalled("groff", "groff-base")) { return; }
+    work.write("page", documentOf("man"));
+    const Outcome shown = work.runCommand("groff -man -Tascii -ww -P-cbou page");
+    CHECK(these(shown.exit_code, shown.errors) == these(0, ""));
+    std::size_t at = shown.output.find("COMMANDS");
+    for (const Command& command : shownCommands()) {
+        at = shown.output.find(fmt::format("\n   binosplat {}", command.name), at);
+        REQUIRE_MESSAGE(at != std::string::npos, command.name);
+        for (const OptionDescription& option : optionsOf(command)) {
+            at = shown.output.find(fmt::format("\n       --{}", option.text.key), at);
+            REQUIRE_MESSAGE(at != std::string::npos, command.name << " --" << option.text.key);
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats and description") {
     if (!test::isInstalled("desktop-file-validate", "desktop-file-utils") ||
         !test::isInstalled("appstreamcli", "appstream")) {
@@ -160,6 +176,16 @@ TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats an
         opened += type + ";";
     }
     CHECK(findAll(textIn(base + ".desktop"), "MimeType=(.*)\n") == std::vector<std::string>{opened});
+    // What a double click runs: one word for the file, whatever its name.
+    const std::vector<std::string> started = findAll(textIn(base + ".desktop"), "\nExec=(.*)\n");
+    REQUIRE(started.size() == 1);
+    std::vector<std::string> call = wordsIn(started[0]);
+    CHECK(call.at(0) == "binosplat");
+    call.erase(call.begin());
+    CHECK(std::ranges::count(call, "%f") == 1);
+    const std::string name = "/home/a b/my scene.ply";
+    std::ranges::replace(call, std::string("%f"), name);
+    CHECK(std::get<ViewOptions>(test::parseWords(call)).scene == name);
     for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
         CHECK_MESSAGE(contains(opened, type + ";"), type);
     }
