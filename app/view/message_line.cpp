@@ -30,8 +30,7 @@ void MessageLine::show(RoomSight& sight, const TexelLayout& layout, const PanelI
         sight.message = drawGesture(*gesture, layout);
     }
     const auto isCovered = [&](bool above) {
-        return panel_is_shown &&
-               panel->covers(room_from_head, placeOf(above), {kMessageMetres, kHighMetres});
+        return panel_is_shown && panel->covers(room_from_head, placeOf(above), {kMessageMetres, kHighMetres});
     };
     is_above_ = panel_is_shown && is_above_ != (isCovered(is_above_) && !isCovered(!is_above_));
     sight.message_place = placeOf(is_above_);
