@@ -19,7 +19,7 @@ bool StereoFrame::growFor(glm::uvec2 size_px) {
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         TargetState& target = state.targets[t];
         // A history of another size is of no use: all of a larger picture is rendered.
-        if (plan.targets[t].history) {
+        if (plan.targets[t].history || plan.targets[t].from_history_later) {
             target.pairs.needed = std::max(target.pairs.needed, target.warp_counters.picture_cost);
         }
         pairs += target.pairs.needed;
@@ -75,28 +75,38 @@ void StereoFrame::growForVisible() {
 }
 
 bool StereoFrame::rendersInFull(std::span<const Eye> eyes, const FrameSettings& settings) {
-    if (settings.mode != Mode::kTemporal || history_pays_.mayReproject() || memory_.isFirstFrame()) {
+    if (settings.mode != Mode::kTemporal || !settings.keep_history || history_pays_.mayReproject() ||
+        memory_.isFirstFrame() || FrameMemory::isCutShort(state_)) {
         return false;
     }
     const FramePlan plan = planFrame(settings, eyes, false, scene_->splatCount());
-    FrameState state = state_;
-    // A splat that is seen touches a tile; how the work is divided among the eyes is not known.
-    const auto pairs = static_cast<std::uint32_t>(std::min(history_pays_.fullWork(), 1.0 * gpu::kMaxItems));
-    for (gpu::ListState& visible : state.visible) { visible.needed = std::min(pairs, scene_->splatCount()); }
-    for (TargetState& target : state.targets) { target.pairs.needed = pairs; }
+    FrameState state = stateAhead();
+    double tiles = 0.0;
+    for (const Eye& eye : eyes) {
+        const glm::uvec2 of_eye = tilesOf(eye.size_px);
+        tiles += 1.0 * of_eye.x * of_eye.y;
+    }
+    // A splat that is seen touches a tile; how the work is divided among the eyes is not known. Until this
+    // frame is known, there may be twice as much of it.
+    const auto pairs = static_cast<std::uint32_t>(
+        std::min(std::max(2.0 * history_pays_.fullWork(), gpu::kTilePairs * tiles), 1.0 * gpu::kMaxItems));
+    for (gpu::ListState& visible : state.visible) {
+        visible.needed = std::max(visible.needed, std::min(pairs, scene_->splatCount()));
+    }
+    for (TargetState& target : state.targets) { target.pairs.needed = std::max(target.pairs.needed, pairs); }
     if (memory_.hasCapacity(plan, state, kCapacityAhead)) { return true; }
     if (memory_.growsBeside()) { memory_.growBeside(plan, state); }
     return false;
 }
 
-void StereoFrame::learnWhetherHistoryPays(const FrameCounters& counters) {
+void StereoFrame::learnWhetherHistoryPays(const HistoryPays::Asked& asked, const FrameCounters& counters) {
     double tiles = 0.0, pairs = 0.0;
     for (const TargetCounters& target : counters.targets) {
         tiles += static_cast<double>(target.tiles - target.tiles_hidden);
         pairs += static_cast<double>(target.tile_pairs);
     }
     if (!counters.warped || !counters.warped->work) {
-        history_pays_.learn(pairs, std::nullopt, tiles);
+        history_pays_.learn(asked, pairs, std::nullopt, tiles);
         return;
     }
     // An empty tile counts for kTilePairs there.
@@ -104,7 +114,7 @@ void StereoFrame::learnWhetherHistoryPays(const FrameCounters& counters) {
         return static_cast<double>(cost) - static_cast<double>(gpu::kTilePairs * of_tiles);
     };
     const WarpedCounters& warped = *counters.warped;
-    history_pays_.learn(worth(warped.work->full, warped.tiles_shown),
+    history_pays_.learn(asked, worth(warped.work->full, warped.tiles_shown),
                         worth(warped.work->patched, warped.tiles_patched), tiles);
 }
 

@@ -22,6 +22,9 @@ constexpr double kMostZoom = 2.0;
 // While frames are rendered in full, nothing is known about what would have to be rendered again: less and
 // less is assumed, by half in a second at 90 Hz, so that reprojecting is tried again.
 constexpr double kShareFades = 0.9923;
+// With more work than this, as a multiple of the cost of reprojecting, a lower bound or budget pays, and
+// lists for both pictures would be long.
+constexpr double kMostFull = 2.0;
 
 bool moves(const Pose& from, const Pose& to, double farthest) {
     const bool turns =
@@ -81,17 +84,19 @@ MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSett
             settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
 }
 
-void HistoryPays::ask(const StereoSettings& settings) {
-    if (settings == asked_) { return; }
-    asked_ = settings;
-    pays_ = true;
+void HistoryPays::ask(const Asked& asked) {
+    if (asked == asked_) { return; }
+    forget();
+    asked_ = asked;
 }
 
-void HistoryPays::learn(double full, std::optional<double> rendered, double tiles) {
+void HistoryPays::learn(const Asked& asked, double full, std::optional<double> rendered, double tiles) {
+    if (asked != asked_) { return; }
     full_ = full;
     share_ = rendered ? *rendered / std::max(full, 1.0) : kShareFades * share_;
-    const double cost = asked_.move_cost * tiles;
-    pays_ = (1.0 - share_) * full >= (pays_ ? cost : cost * (1.0 + 1.0 / gpu::kResumePart));
+    const double cost = asked_.stereo.move_cost * tiles,
+                 least = pays_ ? cost : cost * (1.0 + 1.0 / gpu::kResumePart);
+    pays_ = full > kMostFull * cost || (1.0 - share_) * full >= least;
 }
 
 }  // namespace binosplat

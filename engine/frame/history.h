@@ -59,23 +59,25 @@ private:
     bool pays_ = true;
 };
 
-// Whether reprojecting pays for `temporal`: frames are rendered in full, which is exact, for as long as
-// reprojecting both eyes' histories would cost more than it saves. Works are of both eyes, in pairs of tile
-// and splat.
+// Whether reprojecting pays for `temporal`: frames with few pairs of tile and splat are rendered in full,
+// which is exact, for as long as reprojecting both eyes' histories would cost more than it saves. Work is
+// that of both eyes, in such pairs.
 class HistoryPays {
 public:
+    using Asked = MovingPays::Asked;
+
     [[nodiscard]] bool mayReproject() const { return pays_; }
-    // The work of a picture in full, as far as known.
+    // The work of both pictures in full, as far as known.
     [[nodiscard]] double fullWork() const { return full_; }
     // With other settings, less may have to be rendered again.
-    void ask(const StereoSettings& settings);
-    // A frame of so many tiles, `move_cost` each; `rendered`: what of it was rendered again, if it had a
-    // history.
-    void learn(double full, std::optional<double> rendered, double tiles);
+    void ask(const Asked& asked);
+    // A frame with the settings `asked`, of so many tiles; `rendered`: the work that was done again, if it
+    // had a history.
+    void learn(const Asked& asked, double full, std::optional<double> rendered, double tiles);
     void forget() { *this = {}; }
 
 private:
-    StereoSettings asked_;
+    Asked asked_;
     bool pays_ = true;
     double full_ = 0.0;
     double share_ = 0.0;  // of the work that is rendered again

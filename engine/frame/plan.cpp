@@ -230,7 +230,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         if (coarse) { plan.targets.back().gaze = settings.gazes[static_cast<std::size_t>(e)]; }
     }
     plan.keeps_history = keeps_history;
-    plan.reprojecting_is_dear = in_full;
+    plan.in_full = in_full;
     if (keeps_history && !has_history) { plan.spare_picture = static_cast<int>(eyes.size()); }
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }

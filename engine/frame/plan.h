@@ -94,7 +94,7 @@ struct FramePlan {
     std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
     int dominant = 0;                                   // of the targets
     bool keeps_history = false;                         // later frames are made from this one
-    bool reprojecting_is_dear = false;                  // both eyes are rendered in full for that reason
+    bool in_full = false;                               // since reprojecting would cost more
     std::optional<int> spare_picture = {};              // the picture for the frame after this one
     // How many pictures are rendered at the same time, from lists with capacity for each; and in that frame.
     int at_once = 1, at_once_ahead = 1;

@@ -170,7 +170,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     const bool two_full =
         two && plan.targets[0].coarse && !plan.targets[0].history && !plan.targets[1].history;
     leaveOut(two_full, "reprojection: both eyes are rendered, coarsely where they do not see sharply");
-    leaveOut(plan.reprojecting_is_dear,
+    leaveOut(plan.in_full && !two_full,
              "reprojection: rendering both eyes in full costs no more, so nothing is lost");
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         if (plan.targets[t].warp) { explainWarp(frame, t, leaveOut); }

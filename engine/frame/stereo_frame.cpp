@@ -210,9 +210,10 @@ FrameResult StereoFrame::take(const Flight& flight) {
     }
     FrameResult result =
         reportFrame({context_, *scene_, memory_, flight.plan, state_, flight.commands}, flight.settings.mark);
-    if (flight.settings.mode == Mode::kTemporal && flight.plan.keeps_history &&
-        !FrameMemory::isCutShort(state_)) {
-        learnWhetherHistoryPays(result.counters);
+    if (FrameMemory::isCutShort(state_)) {
+        history_pays_.forget();
+    } else if (flight.settings.mode == Mode::kTemporal && flight.plan.keeps_history) {
+        learnWhetherHistoryPays(flight.asked, result.counters);
     }
     return result;
 }
@@ -307,7 +308,7 @@ StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes,
 
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
-    if (settings.mode == Mode::kTemporal) { history_pays_.ask(settings.stereo); }
+    if (settings.mode == Mode::kTemporal) { history_pays_.ask(asked); }
     const bool may_move = moving_pays_.mayMove(asked), in_full = rendersInFull(eyes, settings);
     const double changed = changedShare(eyes, settings);
     plan_ = planFrame(settings, eyes, may_move && !in_full, scene_->splatCount(),

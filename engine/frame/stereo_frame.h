@@ -193,7 +193,7 @@ private:
     // `temporal`: true if reprojecting does not pay, and the lists have capacity for whole pictures. If they
     // lack it, longer ones are being made.
     [[nodiscard]] bool rendersInFull(std::span<const Eye> eyes, const FrameSettings& settings);
-    void learnWhetherHistoryPays(const FrameCounters& counters);
+    void learnWhetherHistoryPays(const HistoryPays::Asked& asked, const FrameCounters& counters);
     // Counts the splats that the eyes see, which costs little; if their list is too short, nothing is known
     // about what follows.
     void growForVisible();

@@ -94,8 +94,8 @@ void Governor::forget() {
     settings_ = own_;
     if (turnsKnobs()) {
         settings_.error_bound_db = limitsOf(quality_).bound_db;
-        settings_.budget =
-            1.0;  // a lower one would leave tiles under the bound, without the model's knowledge
+        // A lower one would leave tiles under the bound, without the model's knowledge.
+        settings_.budget = 1.0;
     }
     model_.forget();
     clearRecent();

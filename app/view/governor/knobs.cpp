@@ -77,8 +77,9 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
         work_ = workAt(knobs.bound_db);
         warp_error_ *= std::pow(10.0, 0.1 * kErrorDbPerDb * (visits_.back().knobs.bound_db - knobs.bound_db));
     }
+    of_kind_ = full_ == frame.is_full ? of_kind_ + 1 : 1;
     full_ = frame.is_full;
-    enter(knobs);
+    enter(knobs, full_);
     noteChange(frame);
     for (Visit& visit : visits_) {
         visit.weight = std::max(visit.weight * std::pow(kForgottenPerSecond, frame.seconds), kLeastWeight);
@@ -89,10 +90,12 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     now.ms = lowerMedianOf(now.all_ms);
     now.work = lowerMedianOf(now.all_work);
     now.weight = 1.0;
-    if (!full_ && visits_.size() > 1 && now.all_ms.size() == kSeenForChange) {
+    if (!full_ && visits_.size() > 1 && !visits_[visits_.size() - 2].is_full &&
+        now.all_ms.size() == kSeenForChange) {
         learnWork(visits_[visits_.size() - 2], now);
     }
-    if (!full_) { work_ = follow(work_, frame.work, frame.seconds); }
+    if (!full_) { work_ = knows_work_ ? follow(work_, frame.work, frame.seconds) : frame.work; }
+    knows_work_ = knows_work_ || !full_;
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error, frame.seconds); }
     // Once losses have been measured, a frame without one had no loss on its few tiles.
     if (!full_ && (frame.half_loss > 0.0 || losses_ > 0)) {
@@ -101,7 +104,11 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     fit();
 }
 
-bool KnobModel::mayBeChanging() const { return changed_ >= kSeenForChange; }
+bool KnobModel::mayBeChanging() const {
+    const bool had_other_kind =
+        std::ranges::any_of(visits_, [&](const Visit& visit) { return visit.is_full != full_; });
+    return changed_ >= kSeenForChange || (had_other_kind && of_kind_ < kLastingChange);
+}
 
 void KnobModel::learnWork(const Visit& before, const Visit& now) {
     const double up_db = now.knobs.bound_db - before.knobs.bound_db;
@@ -109,15 +116,16 @@ void KnobModel::learnWork(const Visit& before, const Visit& now) {
     work_per_db_ = std::clamp(std::log(now.work / before.work) / up_db, 0.0, kMostWorkPerDb);
 }
 
-void KnobModel::enter(const Knobs& knobs) {
-    if (knows() && visits_.back().knobs == knobs) { return; }
+void KnobModel::enter(const Knobs& knobs, bool is_full) {
+    const auto isThis = [&](const Visit& visit) { return visit.knobs == knobs && visit.is_full == is_full; };
+    if (knows() && isThis(visits_.back())) { return; }
     settling_ = kMostFrames;
     doubted_ratio_ = changed_ >= kSeenForChange ? changed_ratio_ : 1.0;
     changed_ = 0;
     shares_before_ = shares_;
-    const auto before = std::ranges::find(visits_, knobs, &Visit::knobs);
+    const auto before = std::ranges::find_if(visits_, isThis);
     if (before == visits_.end()) {
-        visits_.push_back({knobs});
+        visits_.push_back({knobs, is_full});
         if (visits_.size() > kMostVisits) { visits_.erase(visits_.begin()); }
         return;
     }

@@ -44,7 +44,8 @@ public:
     void add(const Knobs& knobs, const KnobFrame& frame);
 
     [[nodiscard]] bool knows() const { return !visits_.empty(); }
-    // True while frames take another time than before at the same knobs, but have not yet for long.
+    // True while frames take another time than before at the same knobs, or are of the other kind (in full,
+    // reprojected), but have not yet for long.
     [[nodiscard]] bool mayBeChanging() const;
     // The expected time and error of a frame with such knobs, while the head moves as it did recently.
     [[nodiscard]] double expectedMs(const Knobs& knobs) const { return msBy(shares_, knobs); }
@@ -63,6 +64,7 @@ private:
     // A pair of knobs that was in use, with the medians of its last frames.
     struct Visit {
         Knobs knobs;
+        bool is_full = false;                           // its frames were rendered in full
         std::deque<double> all_ms = {}, all_work = {};  // newest last
         double ms = 0.0, work = 0.0;
         double weight = 1.0;  // old visits count for less
@@ -75,7 +77,7 @@ private:
     [[nodiscard]] Terms usualShares() const;
     [[nodiscard]] static Terms termsOf(double scale, double work);
     [[nodiscard]] static double sumOf(const Terms& terms, const Terms& shares);
-    void enter(const Knobs& knobs);
+    void enter(const Knobs& knobs, bool is_full);
     void learnWork(const Visit& before, const Visit& now);
     // Takes all visits for slower, or quicker, if frames at the same knobs and work are for a long time, or
     // still are with other knobs.
@@ -90,6 +92,8 @@ private:
     double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^3 - 1)
     int losses_ = 0;             // number of measurements
     bool full_ = false;          // the last frame was
+    std::size_t of_kind_ = 0;    // frames in a row that were alike in that
+    bool knows_work_ = false;    // a frame was reprojected
     Terms shares_{};             // as fitted to the visits
     Terms settled_{};            // the same after the first frames at the present knobs
     std::size_t settling_ = 0;   // how many of these are still to come

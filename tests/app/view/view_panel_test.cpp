@@ -172,7 +172,7 @@ TEST_CASE_FIXTURE(AtWork, "a resolution without memory for it is refused, and wh
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
     // At the slider's middle the eyes' pictures fit, but those that are handed to the headset do not.
-    CHECK(choose("size 853 853\nframes none\n", kOneSplat + " --mode shared --axes view --memory-limit 21")
+    CHECK(choose("size 845 845\nframes none\n", kOneSplat + " --mode shared --axes view --memory-limit 21")
               .says("presented pixels needs "));
 }
 

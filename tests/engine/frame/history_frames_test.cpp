@@ -146,26 +146,31 @@ TEST_CASE_FIXTURE(Gpu, "where reprojecting would cost more than it saves, frames
 
 TEST_CASE("whether reprojecting pays is decided by its cost, and tried again after a while") {
     HistoryPays pays;
-    StereoSettings settings;
-    settings.move_cost = 32;
-    pays.ask(settings);
-    constexpr double kTiles = 10.0;
-    pays.learn(1000.0, 679.0, kTiles);
-    CHECK(pays.mayReproject());
-    pays.learn(1000.0, 681.0, kTiles);
-    CHECK_FALSE(pays.mayReproject());
+    HistoryPays::Asked asked;
+    asked.stereo.move_cost = 32;
+    pays.ask(asked);
+    const auto learn = [&](double full, std::optional<double> rendered) {
+        pays.learn(asked, full, rendered, 10.0);
+        return pays.mayReproject();
+    };
+    CHECK(learn(600.0, 279.0));
+    CHECK_FALSE(learn(600.0, 281.0));
     // It must then save an eighth more.
-    pays.learn(1000.0, 660.0, kTiles);
-    CHECK_FALSE(pays.mayReproject());
+    CHECK_FALSE(learn(600.0, 260.0));
     int frames = 0;
-    for (; !pays.mayReproject() && frames < 1000; ++frames) { pays.learn(1000.0, std::nullopt, kTiles); }
+    while (!learn(600.0, std::nullopt) && frames < 1000) { ++frames; }
     CHECK(frames >= 3);
     CHECK(frames <= 90);
-    // If there is hardly anything to save, it is not tried.
-    for (int frame = 0; frame < 1000; ++frame) { pays.learn(300.0, std::nullopt, kTiles); }
+    // If there is hardly anything to save, it is not tried; if there is a lot of work, always.
+    for (int frame = 0; frame < 1000; ++frame) { CHECK_FALSE(learn(300.0, std::nullopt)); }
+    CHECK(learn(1000.0, 990.0));
+    CHECK_FALSE(learn(300.0, 0.0));
+    // Frames with other settings say nothing, and are not spoken of.
+    HistoryPays::Asked other = asked;
+    other.stereo.budget = 0.1;
+    pays.learn(other, 600.0, 0.0, 10.0);
     CHECK_FALSE(pays.mayReproject());
-    settings.budget = 0.1;
-    pays.ask(settings);
+    pays.ask(other);
     CHECK(pays.mayReproject());
 }
 
