@@ -13,8 +13,6 @@ namespace {
 constexpr double kMessageSeconds = 6.0;
 constexpr double kHighMetres = 0.16;  // enough for three lines
 
-glm::dvec3 placeOf(bool is_above) { return {0.0, is_above ? -0.28 : 0.28, 1.0}; }
-
 }  // namespace
 
 void MessageLine::show(RoomSight& sight, const TexelLayout& layout, const PanelInRoom* panel,
@@ -29,11 +27,16 @@ void MessageLine::show(RoomSight& sight, const TexelLayout& layout, const PanelI
     if (const auto gesture = seconds_left_ > 0.0 ? std::nullopt : first_steps_.update(step_seconds)) {
         sight.message = drawGesture(*gesture, layout);
     }
-    const auto isCovered = [&](bool above) {
-        return panel_is_shown && panel->covers(room_from_head, placeOf(above), {kMessageMetres, kHighMetres});
+    const auto isFree = [&](double down_m) {
+        return !panel_is_shown ||
+               !panel->covers(room_from_head, {0.0, down_m, 1.0}, {kMessageMetres, kHighMetres});
     };
-    is_above_ = panel_is_shown && is_above_ != (isCovered(is_above_) && !isCovered(!is_above_));
-    sight.message_place = placeOf(is_above_);
+    if (!panel_is_shown) { down_m_ = kPlacesMetres[0]; }
+    if (const auto place = std::ranges::find_if(kPlacesMetres, isFree);
+        !isFree(down_m_) && place != kPlacesMetres.end()) {
+        down_m_ = *place;
+    }
+    sight.message_place = {0.0, down_m_, 1.0};
     sight.has_message = seconds_left_ > 0.0 || first_steps_.areShown();
 }
 

@@ -1,11 +1,13 @@
 // A line of text in front of the wearer's eyes: a message for some seconds while the panel is hidden,
-// otherwise the first steps. It is a little below where one looks, or above if the panel hangs there.
+// otherwise the first steps. It is a little below where the wearer looks, or farther below or above if the
+// panel hangs there.
 #pragma once
 
 #include "app/view/panel/first_steps.h"
 #include "app/view/room/panel_in_room.h"
 #include "app/view/room/room_things.h"
 
+#include <array>
 #include <string>
 
 namespace binosplat {
@@ -25,7 +27,9 @@ private:
     FirstSteps first_steps_;
     std::string message_;        // to be shown
     double seconds_left_ = 0.0;  // for the one that is shown
-    bool is_above_ = false;
+    // In the order of preference: below the direction of the head, a metre away.
+    static constexpr std::array kPlacesMetres{0.28, -0.28, -0.42, 0.42};
+    double down_m_ = kPlacesMetres[0];
 };
 
 }  // namespace binosplat
