@@ -25,7 +25,8 @@ NEXT_SCENE = (
 # Pulls the trigger on the button of another page; x and z of where that is.
 PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.765 {1}\npress right trigger 4 7\n" + LEFT_AWAY
 # Holds the trigger on Recentre.
-PRESSED = "controller right 0 position 0.2 1.2 -0.35 look -0.609 1.619 -0.834\npress right trigger 4 400\n" + LEFT_AWAY
+PRESSED = ("controller right 0 position 0.2 1.2 -0.35 look -0.609 1.619 -0.834\npress right trigger 4 400\n"
+           + LEFT_AWAY)
 STATES = {
     "scenes": ("room2.ply --load-first", LAST + PAGE.format(-0.535, -0.887)),
     "method": ("room2.ply --load-first", LAST + PAGE.format(-0.447, -0.931)),

@@ -16,7 +16,7 @@ namespace {
 constexpr double kRestSeconds = 0.15, kSmoothSeconds = 0.4;  // without a change, before these refinements
 // With four samples per pixel. If frames take longer, the window would not answer for too long.
 constexpr double kSmoothScale = 2.0, kMostSmoothMs = 150.0;
-constexpr double kMostSmoothPixels = 3e7;  // about those of a display of 3840x2160
+constexpr double kMostSmoothPixels = 4.0 * 3840.0 * 2160.0;  // of the samples
 constexpr double kNoPictureSeconds = 0.002;
 // Share of the distance to the centre, so that the near plane is nearer than usual if the camera is close.
 constexpr double kNearShare = 0.05;
