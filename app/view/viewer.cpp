@@ -210,6 +210,11 @@ void Viewer::drawFrame() {
     const bool shares = scenes_.get() != nullptr && drawn.showsOneEye();
     submission_.end(headset(), views, hangs ? &panel_.inRoom() : nullptr,
                     shares ? std::optional<int>(drawn.stereo.dominant) : std::nullopt);
+    if (shows && pictured_ != scenes_.drawn()->name) {
+        pictured_ = scenes_.drawn()->name;
+        const glm::uvec2 size_px = renderer_.sizePx(drawn);
+        log_.say(fmt::format("its first picture has {}x{} pixels an eye", size_px.x, size_px.y));
+    }
     if (std::exchange(picture_asked_, false) && shows) {
         pictures_.begin(
             renderer_.shotOf(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),

@@ -70,6 +70,7 @@ private:
     WaitingFrames waiting_;
     ScenePointing pointing_;
     bool picture_asked_ = false;  // for the next frame
+    std::string pictured_;        // the scene of the last picture
     std::uint64_t frames_without_scene_ = 0;
     bool recentre_asked_ = false, leaving_ = false;
     std::chrono::steady_clock::time_point last_alone_{};

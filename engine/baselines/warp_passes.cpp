@@ -63,7 +63,7 @@ private:
     }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
     [[nodiscard]] auto chosen() const { return listAt(field(offsetof(TargetState, chosen_tiles))); }
-    [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
+    [[nodiscard]] bool hidesSource() const { return in_.source_shown.isMasked(); }
     [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
     // True if resample moves the source's pixels itself.
     [[nodiscard]] bool movesRows() const { return binosplat::movesRows(in_.rectified, in_.warp); }
@@ -94,7 +94,7 @@ void WarpRecorder::weigh() {
                               .visible = visible(),
                               .masked_tiles = chosen(),
                               .counters = counters(),
-                              .kinds_given = in_.target_shown.hideAny()};
+                              .kinds_given = in_.target_shown.isMasked()};
     dispatch(WeighKernel{.rectified = in_.rectified}, pass, tileGroups());
 }
 

@@ -30,8 +30,8 @@ bool canRenderAtOnce(const FramePlan& plan, const FrameSettings& settings, std::
     const glm::uvec2 tiles = tilesOf(left.memory_px);
     return plan.shares_order && (!plan.keeps_history || is_little) && !left.coarse &&
            left.eye.size_px == right.eye.size_px && left.memory_px == right.memory_px &&
-           left.kept.cut == right.kept.cut && (left.tiles_hidden > 0) == (right.tiles_hidden > 0) &&
-           !settings.keep_moments && PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
+           left.kept.cut == right.kept.cut && left.is_masked == right.is_masked && !settings.keep_moments &&
+           PairFormat(2 * tiles.x * tiles.y, splats).fitsOneWord();
 }
 
 }  // namespace
@@ -216,6 +216,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                      : is_first ? Role::kDominant
                                 : Role::kAffiliated,
              .list = apart ? e : 0,
+             .is_masked = !settings.hidden_tiles[static_cast<std::size_t>(e)].empty(),
              .tiles_hidden = countHidden(settings.hidden_tiles[static_cast<std::size_t>(e)]),
              .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
                       .moments = is_first && settings.keep_moments,

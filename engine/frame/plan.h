@@ -54,7 +54,8 @@ struct TargetPlan {
     Eye eye;
     glm::uvec2 memory_px{0, 0};  // its pictures have memory for this size
     Role role = Role::kNone;
-    int list = 0;  // of visible splats
+    int list = 0;            // of visible splats
+    bool is_masked = false;  // some tiles may be hidden
     std::uint32_t tiles_hidden = 0;
     Kept kept;
     std::optional<MeshDepths> mesh_depths = {};  // that cut through it

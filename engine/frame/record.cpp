@@ -160,7 +160,7 @@ Targets FrameRecorder::targetsOf(const FramePlan& plan, int index) const {
                     .background = glm::vec3(plan.background),
                     .kept = planned.kept,
                     .coarse = planned.coarse,
-                    .masked = planned.choice != TileChoice::kAll || memory.shown(first).hideAny(),
+                    .masked = planned.choice != TileChoice::kAll || memory.shown(first).isMasked(),
                     .chosen = planned.choice != TileChoice::kAll};
     for (int t = first; t < first + count; ++t) {
         const glm::uvec2 tiles = tilesOf(plan.targets[static_cast<std::size_t>(t)].eye.size_px);

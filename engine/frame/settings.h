@@ -45,8 +45,9 @@ struct FrameSettings {
     bool keep_moments = false;  // I and J of the dominant eye, for readInverseDepthMoments
     // How each pixel of the affiliated eye came about, for readPixelClasses and the report's counters.
     bool keep_classes = false;
-    // By eye, hidden tiles: a byte per tile, row-major, 1 if it is hidden; empty: none is. They become
-    // background, cost no pairs and do not count for the budget, which is a share of the others.
+    // By eye, hidden tiles: a byte per tile, row-major, 1 if it is hidden. They become background, cost no
+    // pairs and do not count for the budget, which is a share of the others. Empty: none is; frames beside
+    // each other wait where an eye's mask comes or goes, not where one hides nothing.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
     // Modes that render every tile (isInFull), by eye: splats show only where they are nearer than this.
     std::array<std::optional<MeshDepths>, 2> mesh_depths = {};

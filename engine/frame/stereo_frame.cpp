@@ -295,8 +295,8 @@ StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes,
             jumps = true;
             continue;
         }
+        if (plan_.targets[e].is_masked == settings.hidden_tiles[e].empty()) { return Likeness::kOther; }
         const double before = plan_.targets[e].tiles_hidden, now = countHidden(settings.hidden_tiles[e]);
-        if ((before > 0) != (now > 0)) { return Likeness::kOther; }
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
         // A view that turns over its picture shows another row and another column.
         const double most =

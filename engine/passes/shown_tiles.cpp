@@ -18,7 +18,7 @@ void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles
     hidden_.assign(hidden.begin(), hidden.end());
     size_tiles_ = size_tiles;
     words_.clear();
-    if (std::ranges::count(hidden_, std::uint8_t{0}) == std::ssize(hidden_)) { return; }
+    if (hidden_.empty()) { return; }
     const std::size_t row_words = (size_tiles.x + 31) / 32;
     words_.resize(wordsOf(size_tiles), 0);
     for (std::size_t y = 0, tile = 0; y < size_tiles.y; ++y) {
@@ -43,7 +43,7 @@ void ShownTiles::record(Commands& commands) {
 }
 
 void ShownTiles::recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const {
-    if (!hideAny()) { return; }
+    if (!isMasked()) { return; }
     std::vector<gpu::uint> words(hidden_.size());
     std::ranges::transform(hidden_, words.begin(),
                            [](std::uint8_t hidden) { return hidden == 0 ? 0u : gpu::kTileHidden; });

@@ -22,8 +22,9 @@ public:
     // Before the passes of a frame: uploads the mask, and keeps that of the frame before.
     void record(Commands& commands);
 
-    [[nodiscard]] bool hideAny() const { return !words_.empty(); }
-    // The shown tiles, as in shaders/lib/tile_mask.glsl. Null if none is hidden.
+    // True if some tiles may be hidden.
+    [[nodiscard]] bool isMasked() const { return !words_.empty(); }
+    // The shown tiles, as in shaders/lib/tile_mask.glsl. Null if there is no mask.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> mask() const { return addressOf(masks_[turn_]); }
     // Those of the frame before.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> maskBefore() const { return addressOf(masks_[1 - turn_]); }

@@ -62,7 +62,6 @@ HiddenTiles findHidden(const LensShape& lens, glm::uvec2 size_px) {
         if (lens.meshes[e].indices.empty()) { continue; }
         const Intrinsics intrinsics = intrinsicsFromAngles(xr::fromXr(lens.fovs[e]), size_px);
         hidden[e] = xr::findHiddenTiles(lens.meshes[e], intrinsics, size_px, xr::hiddenMarginPx(intrinsics));
-        if (std::ranges::find(hidden[e], 1) == hidden[e].end()) { hidden[e].clear(); }
     }
     return hidden;
 }
@@ -87,9 +86,8 @@ std::array<std::span<const std::uint8_t>, 2> LensMask::update(const std::array<x
         found_.clear();
         is_outdated_ = coming_.valid();
     }
-    if (meshes[0].indices.empty() && meshes[1].indices.empty()) { return {}; }
+    if (!lens_.hasMesh()) { return {}; }
     const Size size(size_px.x, size_px.y);
-    if (found_.empty()) { found_[size] = find_(lens_, size_px); }
     std::vector<glm::uvec2> wanted(others.begin(), others.end());
     wanted.insert(wanted.begin(), size_px);
     std::erase_if(wanted, [&](glm::uvec2 px) { return found_.contains({px.x, px.y}); });
@@ -100,14 +98,22 @@ std::array<std::span<const std::uint8_t>, 2> LensMask::update(const std::array<x
         }
         coming_ = std::async(std::launch::async, [find = find_, lens = lens_, wanted = std::move(wanted)] {
             Found found;
-            for (const glm::uvec2 px : wanted) { found.try_emplace({px.x, px.y}, find(lens, px)); }
+            for (const glm::uvec2 px : wanted) {
+                const auto [at, is_new] = found.try_emplace({px.x, px.y});
+                if (is_new) { at->second = find(lens, px); }
+            }
             return found;
         });
     }
     const auto known = found_.find(size);
     if (known != found_.end()) { return {known->second[0], known->second[1]}; }
-    const auto& [from, hidden] = *found_.rbegin();
+    const glm::uvec2 tiles = tilesOf(size_px);
     for (std::size_t e = 0; e < 2; ++e) {
+        if (found_.empty()) {
+            meanwhile_[e].assign(meshes[e].indices.empty() ? 0 : std::size_t{tiles.x} * tiles.y, 0);
+            continue;
+        }
+        const auto& [from, hidden] = *found_.rbegin();
         meanwhile_[e] = hiddenAsIn(hidden[e], {from.first, from.second}, size_px);
     }
     return {meanwhile_[0], meanwhile_[1]};

@@ -247,7 +247,9 @@ TEST_CASE("the governor's steps, to other resolutions and back, wait for nothing
     // From frame 110 on they take too long, from 130 on three periods, and from 200 on a third of one.
     const std::string script =
         "rate 90\nsize 100 100\nframes none\nvisibility-mask on\nhead 0 position 0 1.6 0\n"
-        "head 1 position 0 1.6 0\nhead 6 position 0.4 1.6 0.2 turn 40 0\nat 6 exit\n";
+        "head 1 position 0 1.6 0\nhead 6 position 0.4 1.6 0.2 turn 40 0\n"
+        // The wearer turns the wheel of the lenses' distance.
+        "at 5 eye left angles -46 44 45 -45\nat 5 eye right angles -44 46 45 -45\nat 6 exit\n";
     eachMode({"temporal --axes stay", "temporal", "alternate", "predicted", "shared", "two-pass", "mono"},
              [&](const Workplace& work, const std::string& mode) {
                  const std::string axes = contains(mode, "--axes") ? "" : " --axes view";

@@ -124,7 +124,10 @@ TEST_CASE_FIXTURE(AtWork, "--frames counts those of the scene, not those before 
     const std::vector<std::string> shows = run.lines("shows builtin:fence");
     REQUIRE(shows.size() == 1);
     const std::size_t before = frameOf(shows[0]);
-    CHECK(before > 4);                                             // in lock-step they come at once
+    CHECK(before > 4);  // in lock-step they come at once
+    const std::vector<std::string> pictures = run.lines("its first picture has 96x96 pixels an eye");
+    REQUIRE(pictures.size() == 1);
+    CHECK(frameOf(pictures[0]) == before);
     CHECK(run.frames.size() == within(before + 12, before + 16));  // STOPPING takes a few frames
 }
 
