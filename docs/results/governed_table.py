@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tomllib
 
-METHODS = [{"name": "temporal", "mode": "temporal", "budget": [0.05, 0.1, 0.2, 0.3]},
+METHODS = [{"name": "temporal", "mode": "temporal", "budget": [0.001, 0.02, 0.05, 0.1, 0.2, 0.3]},
            {"name": "shared", "mode": "shared", "resolution": [0.3, 0.4, 0.5, 0.6, 0.7, 0.8]}]
 RATE, FIRST = 90, 90
 

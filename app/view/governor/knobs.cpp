@@ -219,10 +219,13 @@ Knobs KnobModel::bestAsUsual(double ratio, const KnobLimits& limits) const {
 Knobs KnobModel::bestBy(const Terms& shares, double most_ms, const KnobLimits& limits) const {
     std::optional<Knobs> best;
     Knobs quickest{limits.whole, std::min(kLeastBoundDb, limits.most_bound_db)};
+    const double least_scale = governedScale(limits.whole, 10.0 * limits.least_scale);
     for (double tenths = 10.0; tenths >= 10.0 * limits.least_scale - 1e-6; --tenths) {
         quickest.scale = governedScale(limits.whole, tenths);
         for (double bound_db = limits.most_bound_db; bound_db >= quickest.bound_db; --bound_db) {
             const Knobs knobs{quickest.scale, bound_db};
+            // A low bound shows as streaks that the mean error hides: a smaller picture comes first.
+            if (bound_db < kLeastWhileScaleGives && knobs.scale > least_scale) { continue; }
             const bool is_better = !best || expectedError(knobs) < expectedError(*best);
             if (is_better && msBy(shares, knobs) <= most_ms) { best = knobs; }
         }

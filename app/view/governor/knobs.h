@@ -38,7 +38,8 @@ inline double governedScale(double whole, double tenths) { return std::round(10.
 
 class KnobModel {
 public:
-    static constexpr double kLeastBoundDb = 20.0;
+    // kLeastWhileScaleGives: lower bounds are for the least resolution alone.
+    static constexpr double kLeastBoundDb = 20.0, kLeastWhileScaleGives = 26.0;
 
     void forget() { *this = {}; }
     void add(const Knobs& knobs, const KnobFrame& frame);

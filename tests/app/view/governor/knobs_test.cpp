@@ -41,7 +41,7 @@ struct Minute {
     double late = 0.0, error = 0.0;  // shares of frames; mean square
     double error_at_last = 0.0;      // in the second half
     int changes_at_last = 0;         // likewise
-    bool beaten = false;
+    bool beaten = false, lowers_resolution_first = true;
 
     // With fixed knobs, frames are late if they leave less than a tenth of the period.
     Minute(const Device& device, const Place& place, const Change& change,
@@ -54,6 +54,7 @@ struct Minute {
             governor.wish(Quality::kBalanced, Mode::kTemporal, {1.0, 1.0});
             const GovernedSettings now =
                 fixed ? GovernedSettings{1.0, fixed->scale, fixed->bound_db} : governor.settings();
+            lowers_resolution_first &= now.error_bound_db >= 26.0 || now.resolution_scale == 0.6;
             const double motion = change.motion(time_s), scale = now.resolution_scale;
             const double work = workAt(place, now.error_bound_db, motion),
                          warp_error = warpErrorAt(place, now.error_bound_db, motion);
@@ -93,7 +94,9 @@ constexpr std::array<Place, 3> kPlaces{{{"smooth", 3e-5, 4.0, 3e-5, 0.8, 0.3, 0.
 double leastError(const Device& device, const Place& place, const Change& change) {
     double least = 1.0;
     for (double tenths = 6.0; tenths <= 10.0; ++tenths) {
-        for (double bound_db = 20.0; bound_db <= 30.0; ++bound_db) {
+        // A lower bound is for the least resolution alone.
+        for (double bound_db = tenths > 6.0 ? KnobModel::kLeastWhileScaleGives : 20.0; bound_db <= 30.0;
+             ++bound_db) {
             const Minute fixed(device, place, change, Knobs{0.1 * tenths, bound_db});
             if (fixed.late <= 0.02) { least = std::min(least, fixed.error); }
         }
@@ -116,6 +119,7 @@ TEST_CASE("it is within a tenth of the best fixed knobs, hardly ever late, and c
                      ", changes: ", std::string(change.of));
                 const Minute governed(device, place, change);
                 CHECK(governed.late <= 0.02);
+                CHECK(governed.lowers_resolution_first);
                 CHECK(std::sqrt(governed.error / leastError(device, place, change)) <= 1.1);
                 if (change.of == std::string("nothing")) { CHECK(governed.changes_at_last <= 2); }
             }
