@@ -21,7 +21,7 @@ View viewOf(const OrbitCamera& camera) { return {camera.position(), camera.centr
 
 }  // namespace
 
-CameraPlace::CameraPlace(const RunOptions& options, const ScenePictures& pictures, ViewState& state,
+CameraPlace::CameraPlace(const RunOptions& options, ScenePictures& pictures, ViewState& state,
                          SceneNotes& notes, FileWorker& files, const FrameLog& log, const Say& say)
     : options_(options),
       pictures_(pictures),

@@ -14,7 +14,7 @@ namespace binosplat {
 class CameraPlace {
 public:
     // All must exist while it is used.
-    CameraPlace(const RunOptions& options, const ScenePictures& pictures, ViewState& state, SceneNotes& notes,
+    CameraPlace(const RunOptions& options, ScenePictures& pictures, ViewState& state, SceneNotes& notes,
                 FileWorker& files, const FrameLog& log, const Say& say);
 
     [[nodiscard]] const OrbitCamera& camera() const { return mover_.camera(); }
@@ -44,7 +44,7 @@ private:
     void measure(const PanelRequests& requests);
 
     const RunOptions& options_;
-    const ScenePictures& pictures_;
+    ScenePictures& pictures_;
     ViewState& state_;
     SceneNotes& notes_;
     const FrameLog& log_;

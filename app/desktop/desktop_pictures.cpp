@@ -37,31 +37,48 @@ DesktopPictures::DesktopPictures(const Context& context)
     presenter_.makeKernels();
 }
 
-void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
-    const bool fits = size_px.x <= memory_px_.x && size_px.y <= memory_px_.y;
-    if (fits && images_.at(eyes - 1)) { return; }
+void DesktopPictures::reserve(Pictures& pictures, glm::uvec2 size_px, std::size_t eyes) {
+    auto& [images, memory_px, drawn_px] = pictures;
+    const bool fits = size_px.x <= memory_px.x && size_px.y <= memory_px.y;
+    if (fits && images.at(eyes - 1)) { return; }
     context_.waitForQueue();
     using Usage = vk::ImageUsageFlagBits;
-    if (!fits) { memory_px_ = size_px; }
-    for (std::size_t e = 0; e < images_.size(); ++e) {
-        images_[e].reset();
+    if (!fits) { memory_px = size_px; }
+    for (std::size_t e = 0; e < images.size(); ++e) {
+        images[e].reset();
         if (e < eyes) {
-            images_[e].emplace(context_, "the window's eye", memory_px_, kBytes,
-                               Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
+            images[e].emplace(context_, "the window's eye", memory_px, kBytes,
+                              Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
         }
     }
 }
 
 void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
                              WindowStereo stereo, bool waits) {
-    const glm::uvec2 size_px = eyes.front().size_px;
+    shows_quarters_ = false;
+    std::optional<FrameResult> known = render(whole_, frame, eyes, settings, stereo, waits);
+    if (known) { last_ = std::move(*known); }
+    eyes_ = eyes;
+}
+
+void DesktopPictures::renderQuarter(int quarter, StereoFrame& frame, const std::vector<Eye>& eyes,
+                                    const FrameSettings& settings, WindowStereo stereo) {
+    static_cast<void>(
+        render(quarters_.at(static_cast<std::size_t>(quarter)), frame, eyes, settings, stereo, true));
+}
+
+std::optional<FrameResult> DesktopPictures::render(Pictures& into, StereoFrame& frame,
+                                                   const std::vector<Eye>& eyes,
+                                                   const FrameSettings& settings, WindowStereo stereo,
+                                                   bool waits) {
+    const glm::uvec2 size_px = into.size_px = eyes.front().size_px;
     const glm::uvec2 memory_px = glm::max(settings.most_px, size_px);
-    reserve(memory_px, eyes.size());
+    reserve(into, memory_px, eyes.size());
     frame.reserve(eyes, settings);
     presenter_.reserve(memory_px, false);
     const auto present = [&](Commands& commands) {
         for (std::size_t e = 0; e < eyes.size(); ++e) {
-            const vk::Image image = *images_[e]->image;
+            const vk::Image image = *into.images[e]->image;
             const WarpBuffers* const tinted_by =
                 settings.keep_classes ? frame.chosenTiles(static_cast<int>(e)) : nullptr;
             presenter_.record(commands,
@@ -77,26 +94,31 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
                          vk::ImageLayout::eTransferSrcOptimal);
         }
     };
-    std::optional<FrameResult> known;
-    if (waits) {
-        static_cast<void>(frame.finish());
-        known = frame.render(eyes, settings, present);
-    } else {
-        known = frame.renderAhead(eyes, settings, present);
-    }
-    if (known) { last_ = std::move(*known); }
-    eyes_ = eyes;
+    if (!waits) { return frame.renderAhead(eyes, settings, present); }
+    static_cast<void>(frame.finish());
+    return frame.render(eyes, settings, present);
 }
 
 void DesktopPictures::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts,
                               double from_share) {
     if (eyes_.empty()) { return; }
-    const glm::uvec2 size_px = eyes_.front().size_px;
-    const auto from_x = static_cast<std::uint32_t>(std::lround(from_share * size_px.x));
-    for (const EyePart& part : parts) {
+    const auto blit = [&](const Pictures& pictures, const EyePart& part, const WindowPart& into,
+                          double from) {
+        const auto from_x = static_cast<std::uint32_t>(std::lround(from * pictures.size_px.x));
         const std::size_t image = eyes_.size() == 1 ? 0 : static_cast<std::size_t>(part.eye);
-        blitInto(commands, *images_[image]->image, size_px, window,
-                 {glm::ivec2(part.at_px), glm::ivec2(part.size_px)}, from_x);
+        blitInto(commands, *pictures.images[image]->image, pictures.size_px, window, into, from_x);
+    };
+    for (const EyePart& part : parts) {
+        if (!shows_quarters_) {
+            blit(whole_, part, {glm::ivec2(part.at_px), glm::ivec2(part.size_px)}, from_share);
+            continue;
+        }
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            WindowPart into = quarterOf(part.size_px, quarter);
+            const double from = (from_share * part.size_px.x - into.at_px.x) / into.size_px.x;
+            into.at_px += glm::ivec2(part.at_px);
+            blit(quarters_[static_cast<std::size_t>(quarter)], part, into, std::clamp(from, 0.0, 1.0));
+        }
     }
 }
 

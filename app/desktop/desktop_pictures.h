@@ -39,6 +39,12 @@ public:
     // Error if memory is short.
     void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings,
                 WindowStereo stereo, bool waits);
+    // The same for a quarter of each eye's picture, with more samples; waits. The frame then has this
+    // quarter.
+    void renderQuarter(int quarter, StereoFrame& frame, const std::vector<Eye>& eyes,
+                       const FrameSettings& settings, WindowStereo stereo);
+    // From now on the four quarters are shown, until the next picture.
+    void showQuarters() { shows_quarters_ = true; }
     // Records the parts' pictures, scaled, into a window that has been cleared; of each only what lies to the
     // right of this share of its width.
     void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts,
@@ -51,12 +57,20 @@ public:
     void forget() { eyes_.clear(), last_ = {}; }
 
 private:
-    void reserve(glm::uvec2 size_px, std::size_t eyes);
+    // A picture of each eye.
+    struct Pictures {
+        std::array<std::optional<OwnImage>, 2> images;
+        glm::uvec2 memory_px{0, 0}, size_px{0, 0};  // of each image, and of the picture in it
+    };
+    void reserve(Pictures& pictures, glm::uvec2 size_px, std::size_t eyes);
+    std::optional<FrameResult> render(Pictures& into, StereoFrame& frame, const std::vector<Eye>& eyes,
+                                      const FrameSettings& settings, WindowStereo stereo, bool waits);
 
     const Context& context_;
     Presenter presenter_;
-    std::array<std::optional<OwnImage>, 2> images_;
-    glm::uvec2 memory_px_{0, 0};  // of each image; a picture may be smaller
+    Pictures whole_;
+    std::array<Pictures, 4> quarters_;
+    bool shows_quarters_ = false;
     std::vector<Eye> eyes_;
     FrameResult last_;
 };

@@ -76,6 +76,25 @@ std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm
     return eyes;
 }
 
+WindowPart quarterOf(glm::uvec2 size_px, int quarter) {
+    const glm::uvec2 which(quarter % 2, quarter / 2), low = which * size_px / 2u,
+                                                      high = (which + 1u) * size_px / 2u;
+    return {glm::ivec2(low), glm::ivec2(high - low)};
+}
+
+Eye quarterOf(const Eye& whole, glm::uvec2 part_px, int quarter, double samples) {
+    const WindowPart part = quarterOf(part_px, quarter);
+    Eye eye = whole;
+    eye.size_px = glm::max(glm::uvec2(glm::round(samples * glm::dvec2(part.size_px))), glm::uvec2(16));
+    const glm::dvec2 scale = glm::dvec2(eye.size_px) / glm::dvec2(part.size_px),
+                     own = scale * glm::dvec2(part_px) / glm::dvec2(whole.size_px);
+    eye.intrinsics.fx *= own.x;
+    eye.intrinsics.fy *= own.y;
+    eye.intrinsics.cx = own.x * eye.intrinsics.cx - scale.x * part.at_px.x;
+    eye.intrinsics.cy = own.y * eye.intrinsics.cy - scale.y * part.at_px.y;
+    return eye;
+}
+
 glm::dvec3 pointAt(const Eye& eye, const glm::dvec2& place_px, double depth) {
     const Intrinsics& lens = eye.intrinsics;
     return transform(eye.world_from_camera, depth * glm::dvec3((place_px.x - lens.cx) / lens.fx,

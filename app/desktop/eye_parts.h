@@ -49,6 +49,10 @@ WindowLayout layOutWindow(glm::uvec2 size_px, double scale, const ViewSettings& 
 // One eye, or two, [kLeft] and [kRight], of `size_px`. Content in the plane of the screen is at the same
 // pixel for both.
 std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm::uvec2 size_px);
+// A quarter of a part, or of another rectangle of pixels: 0 to 3, row-major.
+WindowPart quarterOf(glm::uvec2 size_px, int quarter);
+// An eye that sees one quarter of a part, of this size, with this many samples per pixel each way.
+Eye quarterOf(const Eye& whole, glm::uvec2 part_px, int quarter, double samples);
 // The place that an eye sees at a pixel of its picture, at `depth` along its axis.
 glm::dvec3 pointAt(const Eye& eye, const glm::dvec2& place_px, double depth);
 

@@ -14,8 +14,9 @@ namespace binosplat {
 namespace {
 
 constexpr double kRestSeconds = 0.15, kSmoothSeconds = 0.4;  // without a change, before these refinements
-// With four samples per pixel. If frames take longer, the window would not answer for too long.
-constexpr double kSmoothScale = 2.0, kMostSmoothMs = 150.0;
+// Four samples per pixel, a quarter of the picture at a time: each takes about as long as a picture with one
+// sample. If that is longer, the window would not answer for too long.
+constexpr double kSmoothScale = 2.0, kMostQuarterMs = 1000.0;
 constexpr double kMostSmoothPixels = 4.0 * 3840.0 * 2160.0;  // of the samples
 constexpr double kNoPictureSeconds = 0.002;
 // Share of the distance to the centre, so that the near plane is nearer than usual if the camera is close.
@@ -33,6 +34,13 @@ FramesAhead framesInMotion(const ViewSettings& settings, glm::uvec2 size_px) {
     stereo.foveation_deg = 0.0;
     stereo.half_periphery = false;
     return {stereo, size_px, /*with_depth*/ true, settings.tint, {}};
+}
+
+bool becomesSmooth(SmoothAtRest wish, double samples, glm::uvec2 part_px, double picture_ms) {
+    const bool fits =
+        samples <= kSmoothScale && samples * samples * part_px.x * part_px.y <= kMostSmoothPixels;
+    return fits &&
+           (wish == SmoothAtRest::kOn || (wish == SmoothAtRest::kAuto && picture_ms < kMostQuarterMs));
 }
 
 void ScenePictures::forget() {
@@ -55,15 +63,11 @@ double ScenePictures::secondsToNext() const {
     return secondsToRefine().value_or(std::numeric_limits<double>::infinity());
 }
 
+double ScenePictures::samples() const { return kSmoothScale * state_.settings().resolution_scale; }
+
 bool ScenePictures::smooths() const {
-    const SmoothAtRest smooth = state_.settings().window_smooth;
-    const double resolution = kSmoothScale * state_.settings().resolution_scale,
-                 pixels = resolution * resolution * drawn_.part_px.x * drawn_.part_px.y;
-    if (smooth == SmoothAtRest::kOff || resolution > kSmoothScale || pixels > kMostSmoothPixels) {
-        return false;
-    }
-    const double ms = kSmoothScale * kSmoothScale * shown_.lastFrame().gpu_total_ms;
-    return smooth == SmoothAtRest::kOn || (!context_.isSoftware() && ms < kMostSmoothMs);
+    return becomesSmooth(state_.settings().window_smooth, samples(), drawn_.part_px,
+                         shown_.lastFrame().gpu_total_ms);
 }
 
 std::optional<double> ScenePictures::secondsToRefine() const {
@@ -90,9 +94,6 @@ bool ScenePictures::draw(const OrbitCamera& camera, const WindowLayout& layout, 
     sight.settings.page = {};  // these change nothing in the scene
     sight.settings.panel = {};
     if (!(sight == drawn_)) {
-        const bool is_as_large = sight.part_px == drawn_.part_px &&
-                                 sight.settings.resolution_scale == drawn_.settings.resolution_scale;
-        if (!is_as_large) { most_scale_ = 1.0; }
         drawn_ = std::move(sight);
         refinement_ = Refinement::kMoving;
         changed_at_ = Clock::now();
@@ -101,36 +102,68 @@ bool ScenePictures::draw(const OrbitCamera& camera, const WindowLayout& layout, 
     }
     const std::optional<double> seconds_left = secondsToRefine();
     if (!seconds_left || (*seconds_left > 0.0 && !is_file_asked_)) { return false; }
-    const bool is_full = refinement_ == Refinement::kFull;
-    refinement_ = is_full ? Refinement::kSmooth : Refinement::kFull;
-    render(layout, is_full ? kSmoothScale : 1.0, true, refresh_hz);
+    if (refinement_ == Refinement::kFull && !is_file_asked_) { return smoothOn(); }
+    refinement_ = Refinement::kFull;
+    render(layout, 1.0, true, refresh_hz);
     if (std::exchange(is_file_asked_, false)) { writeFile(layout); }
     return true;
 }
 
 void ScenePictures::render(const WindowLayout& layout, double scale, bool at_rest, double refresh_hz) {
-    const double resolution = state_.settings().resolution_scale;
-    const auto sizeAt = [&](double share) {
-        return glm::max(glm::uvec2(glm::round(share * resolution * glm::dvec2(drawn_.part_px))),
-                        glm::uvec2(16));
-    };
-    FrameSettings settings = settingsFor(at_rest);
-    most_scale_ = std::max(most_scale_, scale);
-    settings.most_px = sizeAt(most_scale_);
-    settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale * resolution));
-    std::vector<Eye> eyes = eyesOf(drawn_.camera, layout.sight, sizeAt(scale));
-    shown_.render(scenes_.frame(), eyes, settings, layout.sight.stereo, at_rest);
-    double gpu_ms = shown_.lastFrame().gpu_total_ms;
-    if (scenes_.other() != nullptr) {
-        try {
-            for (Eye& eye : eyes) { eye.world_from_camera.position += scenes_.otherFromShown(); }
-            other_->render(scenes_.otherFrame(), eyes, settings, layout.sight.stereo, at_rest);
-            gpu_ms += other_->lastFrame().gpu_total_ms;
-        } catch (const vk::DeviceLostError&) { throw; } catch (const Error& error) {
-            say_(scenes_.goOnAlone(error));
-        }
-    }
+    drawn_sight_ = layout.sight;
+    const double gpu_ms = renderWhole(scale, at_rest);
     motion_.measure(0.001 * static_cast<double>(shown_.lastFrame().mark), gpu_ms, refresh_hz);
+}
+
+double ScenePictures::renderWhole(double scale, bool at_rest) {
+    quarters_ = 0;
+    const double resolution = scale * state_.settings().resolution_scale;
+    const glm::uvec2 size_px =
+        glm::max(glm::uvec2(glm::round(resolution * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
+    FrameSettings settings = settingsFor(at_rest);
+    settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * resolution));
+    double gpu_ms = 0.0;
+    renderBoth(eyesOf(drawn_.camera, drawn_sight_, size_px),
+               [&](DesktopPictures& pictures, StereoFrame& frame, const std::vector<Eye>& eyes) {
+                   pictures.render(frame, eyes, settings, drawn_sight_.stereo, at_rest);
+                   gpu_ms += pictures.lastFrame().gpu_total_ms;
+               });
+    return gpu_ms;
+}
+
+void ScenePictures::renderBoth(std::vector<Eye> eyes,
+                               const std::function<void(DesktopPictures& pictures, StereoFrame& frame,
+                                                        const std::vector<Eye>& eyes)>& draw) {
+    draw(shown_, scenes_.frame(), eyes);
+    if (scenes_.other() == nullptr) { return; }
+    try {
+        for (Eye& eye : eyes) { eye.world_from_camera.position += scenes_.otherFromShown(); }
+        draw(*other_, scenes_.otherFrame(), eyes);
+    } catch (const vk::DeviceLostError&) { throw; } catch (const Error& error) {
+        say_(scenes_.goOnAlone(error));
+    }
+}
+
+bool ScenePictures::smoothOn() {
+    if (quarters_ < 4) {
+        std::vector<Eye> eyes = eyesOf(drawn_.camera, drawn_sight_, drawn_.part_px);
+        for (Eye& eye : eyes) { eye = quarterOf(eye, drawn_.part_px, quarters_, samples()); }
+        renderBoth(std::move(eyes),
+                   [&](DesktopPictures& pictures, StereoFrame& frame, const std::vector<Eye>& seen) {
+                       pictures.renderQuarter(quarters_, frame, seen, settingsFor(true), drawn_sight_.stereo);
+                   });
+        ++quarters_;
+        return false;
+    }
+    takeBackQuarters();
+    refinement_ = Refinement::kSmooth;
+    shown_.showQuarters();
+    if (scenes_.other() != nullptr) { other_->showQuarters(); }
+    return true;
+}
+
+void ScenePictures::takeBackQuarters() {
+    if (quarters_ > 0) { renderWhole(1.0, true); }
 }
 
 FrameSettings ScenePictures::settingsFor(bool at_rest) const {
@@ -140,6 +173,8 @@ FrameSettings ScenePictures::settingsFor(bool at_rest) const {
     const double size = scenes_.get()->facts.size_units,
                  usual = size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
     frame.near = options_.near.value_or(std::min(usual, kNearShare * drawn_.camera.distance()));
+    // The largest quarter, which is as large as the whole with one sample per pixel.
+    frame.most_px = quarterOf({}, drawn_.part_px, 3, samples()).size_px;
     frame.half_floats = true;
     frame.keep_both_depths = true;
     frame.keep_classes = settings.tint;
@@ -166,6 +201,7 @@ void ScenePictures::writeFile(const WindowLayout& layout) {
 void ScenePictures::keep(SceneNotes& notes) {
     if (scenes_.get() == nullptr || shown_.eyes().empty()) { return; }
     try {
+        takeBackQuarters();
         notes.keepPicture(*scenes_.get(), [picture = scenes_.frame().readPicture(0)] { return picture; });
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
@@ -184,9 +220,10 @@ void ScenePictures::compose(Commands& commands, vk::Image window, const std::vec
 }
 
 std::optional<glm::dvec3> ScenePictures::seenAt(const std::vector<EyePart>& parts,
-                                                const glm::dvec2& place_px) const {
+                                                const glm::dvec2& place_px) {
     const std::optional<EyePart> part = partAt(parts, place_px);
     if (!part || shown_.eyes().empty()) { return std::nullopt; }
+    takeBackQuarters();
     const int e = shown_.eyes().size() == 1 ? 0 : part->eye;
     const Eye& eye = shown_.eyes()[static_cast<std::size_t>(e)];
     const glm::dvec2 pixel =

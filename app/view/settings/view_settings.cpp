@@ -111,8 +111,9 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
             "in a window: distance to the screen plane, as a multiple of that to the point that you orbit",
             field::number<&S::window_plane>(0.1, 10.0)),
         row("window-smooth", "CHOICE",
-            "in a window: once nothing changes, each pixel is the mean of four; auto: on a GPU, if it is "
-            "quick",
+            "in a window: once nothing changes, each pixel is the mean of four; auto: if a picture takes "
+            "less "
+            "than a second",
             field::named<&S::window_smooth>({"auto", "off", "on"})),
     };
     return rows;

@@ -2,6 +2,7 @@
 #include "app/desktop/camera_mover.h"
 #include "app/desktop/desktop_pictures.h"
 #include "app/desktop/desktop_window.h"
+#include "app/desktop/scene_pictures.h"
 #include "tests/suite.h"
 
 #define GLFW_INCLUDE_NONE
@@ -136,6 +137,30 @@ TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, w
     CHECK(these(eyeAt(WindowStereo::kCrossEyed, {20, 30}), eyeAt(WindowStereo::kTopBottom, {20, 40})) ==
           these(kRight, kRight));
     CHECK_FALSE(partAt(partsOf(WindowStereo::kMono, {100, 60}), {100, 30}).has_value());
+    // Quarters cover a part of odd width, too, and see there what the whole does.
+    constexpr glm::uvec2 kPart(101, 60);
+    const Eye whole = eyesOf(OrbitCamera(), {}, kPart)[0];
+    glm::ivec2 covered(0);
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const WindowPart at = quarterOf(kPart, quarter);
+        const Eye eye = quarterOf(whole, kPart, quarter, 2.0);
+        CHECK(eye.size_px == 2u * glm::uvec2(at.size_px));
+        const glm::dvec2 place = glm::dvec2(at.at_px) + 3.5, there(7.0);
+        CHECK(glm::distance(pointAt(whole, place, 2.0), pointAt(eye, there, 2.0)) < 1e-12);
+        covered += glm::ivec2(quarter % 2 == 0 ? 0 : at.at_px.x + at.size_px.x,
+                              quarter < 2 ? 0 : at.at_px.y + at.size_px.y);
+    }
+    CHECK(covered == 2 * glm::ivec2(kPart));
+    // However slow the device is, if a quarter does not take too long.
+    const auto smooths = [&](SmoothAtRest wish, double samples, double ms) {
+        return becomesSmooth(wish, samples, kPart, ms);
+    };
+    CHECK(smooths(SmoothAtRest::kAuto, 2.0, 900.0));
+    CHECK_FALSE(smooths(SmoothAtRest::kAuto, 2.0, 1100.0));
+    CHECK(smooths(SmoothAtRest::kOn, 2.0, 1100.0));
+    CHECK_FALSE(smooths(SmoothAtRest::kOff, 2.0, 1.0));
+    CHECK_FALSE(smooths(SmoothAtRest::kOn, 2.2, 1.0));
+    CHECK_FALSE(becomesSmooth(SmoothAtRest::kOn, 2.0, {8000, 4500}, 1.0));
 }
 
 TEST_CASE("the first picture is coarse, those in motion keep up with the display, with a size that rests") {

@@ -13,11 +13,19 @@ inline void dialogDoes(const Workplace& work, const std::string& command) {
     fs::permissions(dialog, fs::perms::owner_all);
 }
 
+// Pictures at rest have one sample per pixel, unless a test says otherwise.
+inline void drawOnce(const Workplace& work) {
+    const fs::path file = work.base / "config" / "binosplat" / "preferences.toml";
+    if (fs::exists(file)) { return; }
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << "[view]\nwindow-smooth = \"off\"\n";
+}
+
 class Window : public Program {
 public:
     Window(const Workplace& work, const std::string& options, const std::string& environment = "",
            const std::string& scene = "builtin:slanted-wall")
-        : Program((picturesInto(work), work.path),
+        : Program((picturesInto(work), drawOnce(work), work.path),
                   "env " + environment + viewOnDesk(scene + " " + options).substr(3)) {
         await("shows ");
         point();
