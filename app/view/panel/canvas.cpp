@@ -235,10 +235,10 @@ void Canvas::record(Commands& commands) {
     if (!is_new_) { return; }
     recordLetters(commands);
     is_recorded_ = true;
-    const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
+    const vk::ClearValue clear(vk::ClearColorValue(std::array<float, 4>{}));
     const vk::raii::CommandBuffer& buffer = commands.buffer();
     buffer.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffer_,
-                                                   vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), black),
+                                                   vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), clear),
                            vk::SubpassContents::eInline);
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *buffer);
     buffer.endRenderPass();

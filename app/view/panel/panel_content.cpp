@@ -18,6 +18,8 @@ namespace {
 
 // Shares of the width; Quit is on the right, away from buttons that are pressed often.
 constexpr float kTabsShare = 0.64f, kMoreTabsShare = 0.78f;
+// Transparent around it, and the radius of its corners.
+constexpr float kRimPx = 2.0f, kCornerPx = 14.0f;
 
 // Chooses the page; the list of scenes is refreshed when its page is opened.
 void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser,
@@ -98,8 +100,17 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
     PanelWidgets widgets;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
-    ImGui::Begin("binosplat", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings;
+    if (!status.window) {
+        // In the room its edges would be staircases: compositors smooth what lies within a picture alone.
+        flags |= ImGuiWindowFlags_NoBackground;
+        const auto width = static_cast<float>(size_px.x), height = static_cast<float>(size_px.y);
+        ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(kRimPx, kRimPx),
+                                                      ImVec2(width - kRimPx, height - kRimPx),
+                                                      ImGui::GetColorU32(ImGuiCol_WindowBg), kCornerPx);
+    }
+    ImGui::Begin("binosplat", nullptr, flags);
     if (status.has_scene) { drawTabs(widgets, settings, chooser, status); }
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() * 0.84f);
     static constexpr std::array kQuit{"Quit"};

@@ -22,7 +22,7 @@ void stylePanel() {
     style.ScaleAllSizes(1.6f);  // a ray points less precisely than a mouse
     style.FramePadding.y = 0.5f * (kTargetPx - kFontPx);
     style.ItemSpacing.y = 8.0f;
-    style.WindowRounding = 0.0f;
+    style.WindowRounding = style.WindowBorderSize = 0.0f;
     style.FrameRounding = 6.0f;
     ImVec4* const colours = style.Colors;
     colours[ImGuiCol_WindowBg].w = 1.0f;

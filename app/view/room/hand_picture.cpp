@@ -12,6 +12,7 @@ constexpr double kPictureMetres = 0.3;  // fits a spread hand with its wrist
 constexpr glm::dvec3 kSkinLight(0.3, 0.42, 0.55);
 constexpr double kLeastRadiusMetres = 0.004;  // if the runtime does not say
 constexpr float kRimTexels = 1.5f;            // width over which a border fades
+constexpr float kLeastFacing = 0.1f;          // at borders, where surfaces are as steep as can be
 
 constexpr std::size_t kWrist = XR_HAND_JOINT_WRIST_EXT;
 // The joints next to the wrist, of the palm and of each finger; a finger's other joints follow up to its tip.
@@ -35,18 +36,22 @@ HandDrawing::HandDrawing(const TexelLayout& layout) : layout_(layout) {
 }
 
 HandDrawing::Hit HandDrawing::over(const Hit& front, const Hit& back) {
-    return {front.alpha > 0.5f ? front.depth : back.depth, front.light + (1.0f - front.alpha) * back.light,
-            front.alpha + (1.0f - front.alpha) * back.alpha};
+    const Hit& shown = front.alpha > 0.5f ? front : back;
+    return {shown.depth, front.light + (1.0f - front.alpha) * back.light,
+            front.alpha + (1.0f - front.alpha) * back.alpha, shown.slope};
 }
 
-// Where two bones meet, one passes into the other over some texels, so that there is no staircase. Bones end
-// in the same joints: where both have a border, it is one border, and no less soft.
+// Where two bones meet, one passes into the other over some texels, however steeply their depths cross: there
+// is no staircase. Bones end in the same joints: where both have a border, it is one border, and no less
+// soft.
 HandDrawing::Hit HandDrawing::join(const Hit& a, const Hit& b) {
     if (a.alpha == 0.0f) { return b; }
-    const float b_is_front = glm::clamp((a.depth - b.depth) / kRimTexels + 0.5f, 0.0f, 1.0f);
+    const float rim = kRimTexels * (1.0f + a.slope + b.slope);
+    const float b_is_front = glm::clamp((a.depth - b.depth) / rim + 0.5f, 0.0f, 1.0f);
     const Hit with_a = over(a, b), with_b = over(b, a);
     const float alpha = std::max(a.alpha, b.alpha), light = glm::mix(with_a.light, with_b.light, b_is_front);
-    return {b_is_front > 0.5f ? with_b.depth : with_a.depth, light * alpha / with_a.alpha, alpha};
+    const Hit& front = b_is_front > 0.5f ? with_b : with_a;
+    return {front.depth, light * alpha / with_a.alpha, alpha, front.slope};
 }
 
 void HandDrawing::drawBone(const SeenJoint& a, const SeenJoint& b) {
@@ -69,7 +74,8 @@ void HandDrawing::drawBone(const SeenJoint& a, const SeenJoint& b) {
             const float facing_eye = std::sqrt(std::max(0.0f, 1.0f - aside2 / (radius * radius)));
             const float depth = glm::mix(a.depth, b.depth, t) - radius * facing_eye;
             Hit& hit = hits_[std::size_t{y} * kHandPicturePx.x + x];
-            hit = join(hit, {depth, alpha * (0.3f + 0.7f * facing_eye), alpha});
+            const float slope = std::sqrt(aside2) / (radius * std::max(facing_eye, kLeastFacing));
+            hit = join(hit, {depth, alpha * (0.3f + 0.7f * facing_eye), alpha, slope});
         }
     }
 }

@@ -28,6 +28,7 @@ private:
     // `light` is the brightness times alpha; an alpha of 0: nothing is there.
     struct Hit {
         float depth, light, alpha;
+        float slope;  // of the depth, per texel
     };
     // A joint as the picture shows it, in texels.
     struct SeenJoint {

@@ -42,9 +42,11 @@ Texel draw(Sprite sprite, const glm::dvec2& at) {
     const double radius = glm::length(at);
     switch (sprite) {
         case Sprite::kRay:
-            return {kRayLight, 1.0 - rise(0.5, 1.0, std::abs(at.x))};
-        case Sprite::kFadingRay:
-            return {kRayLight, (1.0 - rise(0.5, 1.0, std::abs(at.x))) * (1.0 - rise(-0.8, 1.0, at.y))};
+        case Sprite::kFadingRay: {
+            // It begins softly, too.
+            const double ray = rise(-1.0, -0.9, at.y) * (1.0 - rise(0.5, 1.0, std::abs(at.x)));
+            return {kRayLight, sprite == Sprite::kRay ? ray : ray * (1.0 - rise(-0.8, 1.0, at.y))};
+        }
         case Sprite::kHandle: {
             // Round ends, a little thinner below; four times as long as wide.
             const double beyond = std::max(0.0, std::abs(at.y) - 0.75) / 0.25;

@@ -40,6 +40,15 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
                 farthest = std::max(farthest, std::abs((light[i] >> shift & 255) - 255.0 * expected));
             }
         }
+        // Its edges and round corners lie within the picture, so that compositors smooth them.
+        for (const std::vector<std::uint32_t>& picture : {seen, light}) {
+            const auto alpha = [&](glm::uint x, glm::uint y) { return picture[y * kPanelPx.x + x] >> 24; };
+            const glm::uvec2 middle = kPanelPx / 2u, last = kPanelPx - 1u;
+            CHECK(these(alpha(1, middle.y), alpha(middle.x, 1), alpha(4, 4)) == these(0u, 0u, 0u));
+            CHECK(these(alpha(last.x, middle.y), alpha(middle.x, last.y)) == these(0u, 0u));
+            CHECK(these(alpha(3, middle.y), alpha(middle.x, last.y - 3), alpha(9, 9)) ==
+                  these(255u, 255u, 255u));
+        }
         CHECK(colours.size() > 20);
         CHECK(farthest < 1.0);
     }
