@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kIdleSeconds = 0.25;     // how often to check for Ctrl-C
 constexpr double kLoadingSeconds = 0.05;  // how often to check for results of threads
-constexpr double kGamepadSeconds = 1.0 / 60.0, kBusySeconds = 0.002;
+constexpr double kBusySeconds = 0.002;
 
 class DesktopShell {
 public:
@@ -85,7 +85,7 @@ private:
             chosen_.valid()) {
             most = std::min(most, kLoadingSeconds);
         }
-        return window_.hasGamepad() ? std::min(most, kGamepadSeconds) : most;
+        return most;
     }
 
     // What threads have done since the last turn.

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kWindowWidthPx = 1280, kWindowHeightPx = 720;
 constexpr int kUsualRefreshHz = 60;
+constexpr double kGamepadSeconds = 1.0 / 60.0;  // how often to look at its sticks
 
 DesktopWindow& self(GLFWwindow* window) {
     return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window));
@@ -57,6 +58,15 @@ HeldMotion motionOfKeys(const std::function<bool(int key)>& is_held) {
              held(GLFW_KEY_W) - held(GLFW_KEY_S)},
             {held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT), held(GLFW_KEY_UP) - held(GLFW_KEY_DOWN)},
             is_held(GLFW_KEY_LEFT_SHIFT) || is_held(GLFW_KEY_RIGHT_SHIFT)};
+}
+
+HeldMotion motionOfGamepad(const GLFWgamepadstate& pad) {
+    const float* const axes = pad.axes;
+    return motionOf({{axes[GLFW_GAMEPAD_AXIS_LEFT_X], axes[GLFW_GAMEPAD_AXIS_LEFT_Y]},
+                     {axes[GLFW_GAMEPAD_AXIS_RIGHT_X], axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]},
+                     axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER],
+                     axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER],
+                     pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS});
 }
 
 DesktopWindow::DesktopWindow(const Context& context)
@@ -137,8 +147,20 @@ void DesktopWindow::listen() {
 }
 
 void DesktopWindow::wait(double most_seconds) {
-    if (most_seconds > 0.0 && events_.empty()) { glfwWaitEventsTimeout(most_seconds); }
+    const double end = glfwGetTime() + most_seconds;
+    for (double left = most_seconds; left > 0.0 && events_.empty(); left = end - glfwGetTime()) {
+        // A gamepad wakes nobody.
+        GLFWgamepadstate pad{};
+        const bool looks = gamepadState(pad);
+        glfwWaitEventsTimeout(looks ? std::min(left, kGamepadSeconds) : left);
+        takePinch();
+        if (!looks || heldMotion().isAny() || is_damaged_ || isClosed()) { break; }
+    }
     glfwPollEvents();
+    takePinch();
+}
+
+void DesktopWindow::takePinch() {
     if (const double apart = pinch_->take(); apart != 1.0) {
         add({.kind = DesktopEvent::Kind::kWheel, .steps = wheelStepsOf(apart)});
     }
@@ -146,21 +168,10 @@ void DesktopWindow::wait(double most_seconds) {
 
 std::vector<DesktopEvent> DesktopWindow::takeEvents() { return std::exchange(events_, {}); }
 
-bool DesktopWindow::hasGamepad() const {
-    GLFWgamepadstate state{};
-    return gamepadState(state);
-}
-
 HeldMotion DesktopWindow::heldMotion() const {
     HeldMotion motion = motionOfKeys([&](int key) { return isHeld(key); });
     if (GLFWgamepadstate pad{}; gamepadState(pad)) {
-        const float* const axes = pad.axes;
-        const HeldMotion held_there =
-            motionOf({{axes[GLFW_GAMEPAD_AXIS_LEFT_X], axes[GLFW_GAMEPAD_AXIS_LEFT_Y]},
-                      {axes[GLFW_GAMEPAD_AXIS_RIGHT_X], axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]},
-                      axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER],
-                      axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER],
-                      pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS});
+        const HeldMotion held_there = motionOfGamepad(pad);
         motion.fly += held_there.fly;
         motion.turn += held_there.turn;
         motion.fast = motion.fast || held_there.fast;

@@ -14,6 +14,7 @@
 
 struct GLFWwindow;
 struct GLFWcursor;
+struct GLFWgamepadstate;
 
 namespace binosplat {
 
@@ -30,6 +31,8 @@ struct DesktopEvent {
 
 // What held keys (GLFW's) do.
 HeldMotion motionOfKeys(const std::function<bool(int key)>& is_held);
+// What a gamepad's sticks, triggers and left bumper do.
+HeldMotion motionOfGamepad(const GLFWgamepadstate& pad);
 
 class DesktopWindow {
 public:
@@ -44,7 +47,6 @@ public:
     [[nodiscard]] std::vector<DesktopEvent> takeEvents();
     [[nodiscard]] HeldMotion heldMotion() const;
     [[nodiscard]] bool isHeld(int key) const;
-    [[nodiscard]] bool hasGamepad() const;
     [[nodiscard]] bool isClosed() const;
     // Nobody sees it.
     [[nodiscard]] bool isMinimized() const;
@@ -68,6 +70,7 @@ public:
 
 private:
     void listen();
+    void takePinch();
     void makePictures();
     void add(DesktopEvent event);
     // A place in GLFW's units, in the window's pixels.

@@ -80,6 +80,12 @@ TEST_CASE("keys and gamepads fly, four times as fast if asked; a stick near its 
     CHECK(these(held.fly == glm::dvec3(0.5, 1.0, 1.0), held.turn == glm::dvec2(-0.7, -0.8), held.fast) ==
           these(true, true, true));
     CHECK(motionOf({.right_trigger = 1.0}).fly.y == -1.0);
+    // GLFW's axes: left x and y, right x and y, left and right trigger; the left bumper is button 4.
+    const GLFWgamepadstate pad{{0, 0, 0, 0, 1}, {0.5f, -0.75f, -0.625f, 0.875f, 0.25f, -1.0f}};
+    const HeldMotion by_pad = motionOfGamepad(pad), flat = motionOfGamepad({{}, {0, 0, 0, 0, -1.0f, 0.5f}});
+    CHECK(these(by_pad.fly, by_pad.turn, by_pad.fast) ==
+          these(glm::dvec3(0.5, 0.625, 0.75), glm::dvec2(-0.625, -0.875), true));
+    CHECK(these(flat.fly, flat.fast) == these(glm::dvec3(0.0, -0.75, 0.0), false));
     for (const int shift : {0, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT}) {
         const HeldMotion keys = motionOfKeys([&](int key) { return key == GLFW_KEY_W || key == shift; });
         CHECK(these(keys.fly == glm::dvec3(0.0, 0.0, 1.0), keys.fast) == these(true, shift != 0));
