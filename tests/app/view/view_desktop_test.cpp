@@ -256,10 +256,14 @@ TEST_CASE_FIXTURE(AtWork, "the true size, a viewpoint's name and the panel's set
         for (const char* does : {"key --repeat 12 BackSpace", "type door", "key Return"}) { hands(does); }
         window.await("this viewpoint is called door");
         window.click("Tour", PanelPage::kScenes);
+        std::vector<std::size_t> frames;
         for (const char* said :
              {"viewpoint 1 of 2: your own 1", "viewpoint 2 of 2: door", "the tour is over"}) {
-            window.await(said);
+            const std::string lines = window.await(said);
+            frames.push_back(frameOf(lines.substr(lines.rfind("frame "))));
         }
+        // The ways take four seconds each, in steps of at most a tenth, and each step is shown.
+        CHECK(std::min(frames[1] - frames[0], frames[2] - frames[1]) > 30);
         window.end();
     }
     CHECK(contains(textIn(kept / "preferences.toml"), "\n[view]\npicture-both-eyes = true\n"));
