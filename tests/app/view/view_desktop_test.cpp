@@ -278,6 +278,10 @@ TEST_CASE_FIXTURE(AtWork, "the true size, a viewpoint's name and the panel's set
     CHECK(glm::distance(places[0].eye, places[1].eye) > 0.1);
     window.help();  // with the panel
     CHECK(glm::distance(window.eye(work), places[1].eye) < 1e-4);
+    // Other people's are dropped on the window.
+    writeViewpoint(work, "theirs.viewpoints.json");
+    desk().connection.drop(numberOfWindow(" - binosplat$", "WINDOW"), {work.path / "theirs.viewpoints.json"});
+    window.await("theirs.viewpoints.json, 1 of them new");
     window.end();
 }
 

@@ -252,6 +252,12 @@ inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
            arguments;
 }
 
+// A file with a viewpoint of another person.
+inline void writeViewpoint(const Workplace& work, const std::string& file) {
+    work.write(file, R"({"viewpoints": [{"name": "beside", "eye": [0.6, 0, -0.4], "look": [0, 0, 3],
+        "up": [0, -1, 0]}]})");
+}
+
 // The viewer beside its window.
 class Viewer : public Program {
 public:

@@ -116,7 +116,8 @@ TEST_CASE_FIXTURE(AtWork, "frames go on while the window's events hold its threa
     CHECK(fs::exists(work.path / "dragged" / "frames.jsonl.went-on"));
 }
 
-TEST_CASE_FIXTURE(AtWork, "the last of the scenes dropped on the window is shown, a broken one is not") {
+TEST_CASE_FIXTURE(AtWork,
+                  "of the files dropped on the window the last scene is shown, and viewpoints are taken") {
     if (!haveScreen()) { return; }
     for (const char* name : {"a", "b"}) { work.go(fmt::format("scene one-splat --out {}.ply", name)); }
     work.write("broken.ply", "ply\nnonsense\n");
@@ -126,6 +127,9 @@ TEST_CASE_FIXTURE(AtWork, "the last of the scenes dropped on the window is shown
     viewer.await("shows " + (work.path / "b.ply").string());
     desk().connection.drop(window, {work.path / "broken.ply"});
     viewer.await("broken.ply:");
+    writeViewpoint(work, "theirs.viewpoints.json");
+    desk().connection.drop(window, {work.path / "theirs.viewpoints.json"});
+    viewer.await("theirs.viewpoints.json, 1 of them new");
     hands("key Escape");
     viewer.checkEnd();
     for (const std::string& bad : {std::string("/a.ply"), "shows " + (work.path / "broken.ply").string()}) {
