@@ -94,6 +94,16 @@ TEST_CASE_FIXTURE(AtWork, "what is clicked on the panel is so, and the place is 
     }
 }
 
+TEST_CASE_FIXTURE(AtWork, "the panel comes before the eyes of a wearer who has turned round for a while") {
+    Acts acts(kBlind);
+    acts.head("position 0 1.6 0 turn 180 0").wait(0.5);
+    const double turned = acts.look(2.0), there = acts.look();
+    const ViewRun run = runClean(work, acts, kScene);
+    const auto panelAt = [&](double seconds) { return panelOf(run, run.frameAt(seconds)).middle; };
+    CHECK(glm::distance(panelAt(turned), acts.panel.middle) < 1e-4);
+    CHECK(glm::distance(panelAt(there), {0.45, 1.5, 0.9}) < 1e-4);
+}
+
 TEST_CASE_FIXTURE(AtWork, "a rate that the headset lacks, or that it refuses, is said, and is no end") {
     Acts acts("rate 90 fixed\nsize 64 64\nframes none\n");
     acts.click(placeOf("120 Hz", true)).wait(0.1);
