@@ -31,20 +31,6 @@ constexpr std::chrono::milliseconds kBetweenLooks(200);
 // A headset that has not answered by then is not waited for, if the scene can be shown in a window.
 constexpr std::chrono::seconds kLongestWait(2);
 
-ViewSettings startSettings(const ViewOptions& options, const DeviceDefaults& device = {}) {
-    ViewSettings settings;
-    settings.quality = device.quality;
-    settings.resolution_scale = device.resolution_scale;
-    settings.stereo = options.run.stereo;
-    if (options.simulate) { settings.first_steps = FirstStepsShown::kNever; }  // a script needs none
-    settings = readViewSettings(options.tables, settings);
-    if (options.browse) { settings.page = PanelPage::kScenes; }
-    if (options.hide_panel) { settings.panel = false; }
-    if (options.hide_hands) { settings.hands = false; }
-    if (environment("BINOSPLAT_VISIBILITY_MASK") == "0") { settings.visibility_mask = false; }
-    return settings;
-}
-
 // Called until the headset is there; throws Interrupted on Ctrl-C, Escape or the window's close button. The
 // first call opens the window.
 void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& window) {
@@ -59,7 +45,7 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
 // Settings that suit the device, where the user has not chosen.
 ViewSettings suitDevice(ViewOptions& options, const Context& context) {
     const auto properties = context.physicalDevice().getProperties();
-    DeviceDefaults device =
+    const DeviceDefaults device =
         defaultsOf(context.deviceName(), properties.deviceType == vk::PhysicalDeviceType::eIntegratedGpu,
                    context.deviceMemoryBytes());
     if (!options.run.load.sh_degree) { options.run.load.sh_degree = device.sh_degree; }
@@ -70,8 +56,7 @@ ViewSettings suitDevice(ViewOptions& options, const Context& context) {
         FrameLog::print(
             fmt::format("{}: a small device, starts with {}, see docs/arm.md", context.deviceName(), words));
     }
-    if (context.isSoftware()) { device.quality = Quality::kOff; }  // no setting makes these fast enough
-    return startSettings(options, device);
+    return startSettings(options, context.isSoftware(), device);
 }
 
 void showScene(ViewOptions options, xr::Instance& instance) {
@@ -167,6 +152,21 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
 }
 
 }  // namespace
+
+ViewSettings startSettings(const ViewOptions& options, bool is_software, const DeviceDefaults& device) {
+    ViewSettings settings;
+    // No setting makes a software device fast enough.
+    settings.quality = is_software ? Quality::kOff : device.quality;
+    settings.resolution_scale = device.resolution_scale;
+    settings.stereo = options.run.stereo;
+    if (options.simulate) { settings.first_steps = FirstStepsShown::kNever; }  // a script needs none
+    settings = readViewSettings(options.tables, settings);
+    if (options.browse) { settings.page = PanelPage::kScenes; }
+    if (options.hide_panel) { settings.panel = false; }
+    if (options.hide_hands) { settings.hands = false; }
+    if (environment("BINOSPLAT_VISIBILITY_MASK") == "0") { settings.visibility_mask = false; }
+    return settings;
+}
 
 void runView(const ViewOptions& asked) {
     ViewOptions options = asked;

@@ -35,7 +35,7 @@ std::string describeRate(const ShownRate& rate, Quality quality) {
     std::string words = fmt::format("{:.0f} of {:.0f} Hz{}, {}", std::min(rate.met_hz, rate.display_hz),
                                     rate.display_hz, late, resolution);
     if (rate.is_beaten) { return words + ", still too slow"; }
-    if (quality == Quality::kOff) { return words + "; Balanced keeps the rate"; }
+    if (quality == Quality::kOff) { return words + "; not kept, try Balanced"; }
     if (rate.bound_db) { return fmt::format("{}, errors within {:.0f} dB", words, *rate.bound_db); }
     return rate.budget ? fmt::format("{}, {:.0f} % of it rendered again", words, 100.0 * *rate.budget)
                        : words;

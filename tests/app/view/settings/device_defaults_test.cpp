@@ -1,5 +1,5 @@
 // What the viewer starts with on which device.
-#include "app/view/settings/device_defaults.h"
+#include "app/view/view.h"
 #include "tests/suite.h"
 
 SUITE(device_defaults) {
@@ -22,6 +22,16 @@ TEST_CASE("small is what a headset's processor holds, or a GPU within a processo
     CHECK(describeDefaults({}).empty());
     CHECK(these(DeviceDefaults{}.quality, ViewSettings{}.quality) ==
           these(Quality::kBalanced, Quality::kBalanced));
+}
+
+TEST_CASE("hardware begins with a quality that holds the rate, software with none, unless one is named") {
+    ViewOptions options;
+    const auto qualityOn = [&](bool is_software) { return startSettings(options, is_software).quality; };
+    CHECK(these(qualityOn(false), qualityOn(true)) == these(Quality::kBalanced, Quality::kOff));
+    const DeviceDefaults small = defaultsOf("V3D 7.1.7", true, kGiB);
+    CHECK(startSettings(options, false, small).quality == Quality::kFast);
+    options.tables.push_back({"view", "a.toml:1", {{"quality", {"a.toml:2: quality", {"sharp"}}}}});
+    CHECK(these(qualityOn(false), qualityOn(true)) == these(Quality::kSharp, Quality::kSharp));
 }
 
 }  // SUITE(device_defaults)
