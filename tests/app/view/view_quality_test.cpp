@@ -59,11 +59,13 @@ struct Governed : ViewRun {
 };
 
 TEST_CASE_FIXTURE(AtWork, "where nothing fits a quality's least settings are reached within 60 frames") {
+    picturesInto(work);
     Acts acts("rate 90\nsize 200 200\nframes none\nvisibility-mask on\n");
     std::vector<double> looks;
     for (const char* button : {"", "Sharp", "Fast", "Fast"}) {
         if (*button != '\0') { acts.click(placeOf(button)); }
         looks.push_back(acts.wait(57.0 / 90.0).look(0.02));
+        acts.click(placeOf("Picture")).wait(0.1);
     }
     const ViewRun run = runClean(work, acts,
                                  "builtin:one-splat --load-first --hide-hands --mode temporal" +
@@ -73,6 +75,12 @@ TEST_CASE_FIXTURE(AtWork, "where nothing fits a quality's least settings are rea
     for (const double seconds : looks) { widths.push_back(run.width(run.frameAt(seconds))); }
     // 80 and 40 % of the wearer's setting, which is the maximum.
     CHECK(widths == std::vector{160, 128, 64, 160});
+    // Pictures have the headset's size, whatever is left of the frames'.
+    const std::vector<std::string> pictures = run.lines("/pictures/one-splat-20");
+    REQUIRE(pictures.size() == looks.size());
+    for (const std::string& line : pictures) {
+        CHECK(readPicture(line.substr(line.find('/'))).size_px == glm::uvec2(200));
+    }
     REQUIRE_FALSE(run.lines(" took ").empty());
     const std::string took = run.lines(" took ")[0];
     CHECK(contains(took, "; temporal at 80 %, errors within 34 dB took "));
