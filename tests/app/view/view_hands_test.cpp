@@ -76,14 +76,35 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
                : profile == "logitech/mx_ink_stylus_logitech" ? "right cluster_middle_logitech"
                                                               : "right trigger";
     };
+    const auto fistOf = [](const std::string& profile) {
+        return profile == "ml/ml2_controller"                 ? "right shoulder"
+               : profile == "logitech/mx_ink_stylus_logitech" ? "right cluster_back_logitech"
+                                                              : "right squeeze";
+    };
+    // Those that lack one, and those with a pad that is pressed instead of a stick.
+    const std::set<std::string> without_fist{"khr/simple_controller", "bytedance/pico_g3_controller",
+                                             "huawei/controller"},
+        without_stick{"khr/simple_controller", "logitech/mx_ink_stylus_logitech"},
+        with_pad{"htc/vive_controller", "ml/ml2_controller", "huawei/controller"};
     Acts acts(kBlind);
     acts.point(kBeside).wait(0.4 - acts.now_s);
-    std::vector<double> begins;
+    Panel high = acts.panel;
+    high.middle.y += 0.2;
+    std::vector<double> begins, carried, walked;
     for (const auto& [profile, button] : controllers) {
         begins.push_back(acts.now_s);
         const std::string menu = "right " + button;
         acts.at("profile " + profile).wait(0.045).hold(triggerOf(profile), 0.03);
         acts.wait(0.05).hold(menu, 0.02).wait(0.05).hold(menu, 0.02).wait(0.055);
+        // A fist carries the panel up and back down, and the left stick walks.
+        if (!without_fist.contains(profile)) { acts.hold(fistOf(profile), 0.09); }
+        acts.wait(0.019).right(pointingAt(high, kBeside), 0.02);
+        carried.push_back(acts.look(0.02));
+        acts.right(pointingAt(acts.panel, kBeside), 0.02).wait(0.019);
+        const std::string stick = with_pad.contains(profile) ? "left trackpad" : "left thumbstick";
+        if (with_pad.contains(profile)) { acts.hold(stick, 0.05); }
+        if (!without_stick.contains(profile)) { acts.push(stick, {0.0, 1.0}, 0.05); }
+        walked.push_back(acts.wait(0.04).look(0.06));
     }
     // Buttons of other controllers are pressed before the right one.
     std::vector<double> clicks, lifts, palms;
@@ -118,6 +139,10 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
         CHECK(pulses(run, first + 3, 6) == (is_felt ? 1 : 0));
         CHECK(these(run.panels(first + 8).size(), run.panels(first + 13).empty(),
                     run.panels(first + 19).size()) == these(1, true, 1));
+        const double up_m = without_fist.contains(controllers[i].first) ? 0.0 : 0.2,
+                     risen_m = panelOf(run, run.frameAt(carried[i])).middle.y - acts.panel.middle.y;
+        CHECK(std::abs(risen_m - up_m) < 0.002);
+        CHECK(run.beforeEyes(run.frameAt(walked[i])).empty() == without_stick.contains(controllers[i].first));
     }
     const std::size_t bare = run.frameAt(bare_begin) + 1;
     CHECK(pulses(run, bare, run.frameAt(bare_end) - bare) == 0);
