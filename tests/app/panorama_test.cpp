@@ -111,6 +111,16 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
         CHECK(contains(text, said));
     }
     CHECK(readPicture(work.path / "out/mono.png").size_px == glm::uvec2(64, 32));
+    // An eye's picture of the half before it has a quarter missing on each side.
+    work.go("render builtin:one-splat --projection vr180 --layout separate --size 32x32 --out half");
+    for (const char* eye : {"left", "right"}) {
+        const std::string half = after(work.bytesOf(fmt::format("half/{}.png", eye)), "iTXt");
+        for (const char* said : {"FullPanoWidthPixels=\"64\"", "FullPanoHeightPixels=\"32\"",
+                                 "CroppedAreaImageWidthPixels=\"32\"", "CroppedAreaImageHeightPixels=\"32\"",
+                                 "CroppedAreaLeftPixels=\"16\"", "CroppedAreaTopPixels=\"0\""}) {
+            CHECK_MESSAGE(contains(half, said), eye << ": " << said);
+        }
+    }
     // The same for JPEG, if the build has a library for it: the tags are in the second segment.
     if (work.holds("out/mono.jpg")) {
         const std::string jpg = work.bytesOf("out/mono.jpg"), xmp = "http://ns.adobe.com/xap/1.0/";
@@ -198,6 +208,12 @@ TEST_CASE_FIXTURE(AtWork, "a path becomes a film with both eyes; without ffmpeg 
                              "type=side by side\n", "projection=tiled equirectangular\n"}) {
         CHECK_MESSAGE(contains(read, said), read);
     }
+    work.go(film + "--layout sbs --out flat");
+    const std::string flat = work.runCommand("ffprobe -v error -show_streams flat/video.mp4").output;
+    for (const char* said : {"width=64\n", "height=32\n", "type=side by side\n"}) {
+        CHECK_MESSAGE(contains(flat, said), flat);
+    }
+    CHECK_FALSE(contains(flat, "projection="));
 }
 
 }  // SUITE(panorama)
