@@ -21,6 +21,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace binosplat {
 
@@ -153,6 +154,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
     const bool stay = kind == Axes::kStay, mono = settings.mode == Mode::kMono;
     std::vector<PathFrame> frames;
     StayingAxes axes(glm::radians(kAxesMarginDegrees));
+    bool is_first = true;
     const auto renderFlat = [&](const Cameras& cameras) {
         const std::span<const Eye> views =
             mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
@@ -163,7 +165,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         }
         if (live != nullptr) { settle(*live, eyes); }
         // A device's first frame compiles kernels, which must not count in the report.
-        if (frames.empty()) { frame.render(eyes, settings); }
+        if (std::exchange(is_first, false)) { frame.render(eyes, settings); }
         EyePictures made{{}, frame.render(eyes, settings)};
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             made.pictures.push_back(showTurned(frame.readPicture(static_cast<int>(e)), eyes[e], views[e]));
@@ -171,7 +173,9 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         return made;
     };
     const std::size_t all = path.times_s.size();
-    ProgressLine line(fmt::format("rendering {} frames", all - path.first));
+    // What a frame shows may depend on all before it: those that are there are rendered again.
+    const std::size_t begin = !path.panorama && (stay || hasHistory(settings.mode)) ? 0 : path.first;
+    ProgressLine line(fmt::format("rendering {} frames", all - begin));
     const auto renderNext = [&](std::size_t number) {
         const double time_s = path.times_s[number];
         const Pose world_from_middle =
@@ -179,10 +183,11 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         Cameras cameras = moveCameras(start, world_from_middle);
         if (path.panorama) { cameras = panoramaCameras(cameras, *path.panorama); }
         if (live != nullptr) { live->setTime(time_s - path.times_s.front()); }
-        line.show(static_cast<double>(number - path.first) / static_cast<double>(all - path.first));
+        line.show(static_cast<double>(number - begin) / static_cast<double>(all - begin));
         EyePictures made = path.panorama ? renderPanorama(frame, live, settings, cameras, *path.panorama)
                                          : renderFlat(cameras);
         stopIfInterrupted();
+        if (number < path.first) { return; }
         if (live != nullptr) { made.result.counters.streaming = streamingOf(*live); }
         for (const auto& [name, picture] : namedPictures(std::move(made.pictures), path.layout)) {
             if (frames.empty() && number > 0) {
@@ -193,7 +198,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         frames.push_back({time_s, cameras, std::move(made.result)});
     };
     try {
-        for (std::size_t number = path.first; number < all; ++number) { renderNext(number); }
+        for (std::size_t number = begin; number < all; ++number) { renderNext(number); }
     } catch (const Interrupted&) {
         if (frames.empty()) { throw; }
     }

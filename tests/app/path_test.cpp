@@ -1,5 +1,6 @@
 // Facts about rendering along a path: numbered frames of both eyes, and nothing half-written.
 #include "tests/app/program_script.h"
+#include "tests/xr/simulated/installed.h"
 
 SUITE(path) {
 
@@ -13,8 +14,8 @@ const std::string kExtension = extensionOf(PictureKind::kDisplay);
 
 struct Way : Workplace {
     Way() { write("poses.csv", kPoses); }
-    [[nodiscard]] nlohmann::json report() const {
-        return nlohmann::json::parse(bytesOf("frames/report.json"));
+    [[nodiscard]] nlohmann::json report(const std::string& folder = "frames") const {
+        return nlohmann::json::parse(bytesOf(folder + "/report.json"));
     }
 };
 
@@ -38,26 +39,43 @@ SCRIPT(path, "app/path") {
 }
 
 TEST_CASE_FIXTURE(Way, "frames that were finished before a signal are kept, and --resume makes the others") {
-    const std::string walk = kRender + "--path poses.csv --mode shared --rate 4 --out ";
-    go(walk + "whole");
-    const Outcome stopped = run(walk + "frames", fault("submit", 9, "SIGINT"));
-    CHECK(stopped.exit_code == 130);
-    std::size_t kept = 0;
-    while (holds(fmt::format("frames/frame_{:06}_right{}", kept, kExtension))) { ++kept; }
-    CHECK(kept > 0);
-    CHECK(contains(stopped.errors, fmt::format("{} of 7 frames are in frames, --resume continues", kept)));
-    CHECK(these(files().contains("frames/report.json"), report().at("frames").size()) == these(true, kept));
-    checkRefused(
-        "render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode shared --rate 4 "
-        "--resume --out frames",
-        1, "must be 32x32 as the frames that --resume adds");
-    go(walk + "frames --resume");
-    CHECK(report().at("frames").size() == 7 - kept);
-    for (int frame = 0; frame < 7; ++frame) {
-        for (const char* eye : {"left", "right"}) {
-            const std::string name = fmt::format("frame_{:06}_{}{}", frame, eye, kExtension);
-            CHECK_MESSAGE(bytesOf("frames/" + name) == bytesOf("whole/" + name), name);
+    // A film needs ffmpeg.
+    const bool films = isInstalled("ffmpeg", "ffmpeg");
+    for (const std::string mode : {"shared", "temporal"}) {
+        CAPTURE(mode);
+        const bool is_film = films && mode == "temporal";
+        const std::string walk = kRender + "--path poses.csv --rate 4 --layout " +
+                                 (is_film ? "sbs --video" : "separate") + " --mode " + mode + " --out ";
+        const std::vector<std::string> eyes =
+            is_film ? std::vector<std::string>{"stereo"} : std::vector<std::string>{"left", "right"};
+        const auto nameOf = [&](int frame, const std::string& eye) {
+            return fmt::format("/frame_{:06}_{}{}", frame, eye, kExtension);
+        };
+        const std::string whole = "whole-" + mode, frames = "frames-" + mode;
+        go(walk + whole);
+        const Outcome stopped = run(walk + frames, fault("submit", 13, "SIGINT"));
+        CHECK(stopped.exit_code == 130);
+        int kept = 0;
+        while (holds(frames + nameOf(kept, eyes.back()))) { ++kept; }
+        CHECK(kept == within(1, 6));
+        CHECK(contains(stopped.errors,
+                       fmt::format("{} of 7 frames are in {}, --resume continues", kept, frames)));
+        CHECK(report(frames).at("frames").size() == static_cast<std::size_t>(kept));
+        checkRefused("render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode " +
+                         mode + " --rate 4 --resume --layout " + (is_film ? "sbs" : "separate") + " --out " +
+                         frames,
+                     1,
+                     is_film ? "must be 64x32 as the frames that --resume adds"
+                             : "must be 32x32 as the frames that --resume adds");
+        go(walk + frames + " --resume");
+        CHECK(report(frames).at("frames").size() == static_cast<std::size_t>(7 - kept));
+        for (int frame = 0; frame < 7; ++frame) {
+            for (const std::string& eye : eyes) {
+                CHECK_MESSAGE(bytesOf(frames + nameOf(frame, eye)) == bytesOf(whole + nameOf(frame, eye)),
+                              nameOf(frame, eye));
+            }
         }
+        if (is_film) { CHECK(bytesOf(frames + "/video.mp4") == bytesOf(whole + "/video.mp4")); }
     }
 }
 
