@@ -227,8 +227,8 @@ void addRows(TextColumns& columns, std::string& notes, const Sequence& sequence)
     }
     if (const std::optional<UnderBound> under = underBoundOf(sequence)) {
         notes += fmt::format(
-            "  {}: of the tiles that were not rendered, {:.3f} % are more than {:.0f} dB under its bound; "
-            "worst frame {:.3f} %\n",
+            "  {}: of the tiles that were not rendered, {:.3f} % are more than {:.0f} dB under its bound;\n"
+            "    worst frame {:.3f} %\n",
             sequence.method, 100.0 * under->tiles.underShare(), kMuchUnder_db, 100.0 * under->worst_share);
     }
 }
@@ -363,11 +363,9 @@ std::string motionTable(const MotionRun& run, std::size_t most_columns) {
                            [&](const Sequence& other) { return other.point != begin->point; });
         table += fmt::format(
             "\n{}, {} poses\n"
-            "  dB: PSNR of the run, and what 95 % of the frames and all reach in both eyes; bad: tiles under "
-            "30 dB, mean\n"
-            "  and worst frame; tiles: the worst 0.1 % of them; edge: lost edges; seam: steps between tiles; "
-            "rival:\n"
-            "  sharpness that differs between the eyes\n",
+            "  dB: PSNR of the run, and what 95 % of the frames and all reach in both eyes; bad: tiles\n"
+            "  under 30 dB, mean and worst frame; tiles: the worst 0.1 % of them; edge: lost edges;\n"
+            "  seam: steps between tiles; rival: sharpness that differs between the eyes\n",
             begin->point, begin->frames.size());
         TextColumns columns;
         std::vector<std::string> head{"method",  "ms median", "ms p95",   "ms worst", "work",

@@ -1,6 +1,6 @@
 // Facts about `bench`: what it plans, and how it judges what it measured.
 #include "app/bench/bench_results.h"
-#include "app/bench/bounded_tiles.h"
+#include "app/bench/motion_results.h"
 #include "app/load.h"
 #include "engine/files/load_scene.h"
 #include "tests/app/bench/benches.h"
@@ -285,7 +285,14 @@ TEST_CASE("a table that is wider than a terminal is several, each with its metho
     }
     // Words that occur more than once name rows.
     CHECK(words.count("method") >= 1);
-    for (const std::string& line : linesIn(parts)) { CHECK_MESSAGE(line.size() <= 100, line); }
+    MotionFrame frame;
+    frame.point = frame.method = "predicted";
+    frame.mean_square = {0.1, 0.2};
+    frame.moved_square = 0.3;
+    frame.bounded = BoundedTiles{9, 1};
+    for (const std::string& line : linesIn(parts + motionTable({"GPU", "", "walk.csv", {frame}}, 100))) {
+        CHECK_MESSAGE(line.size() <= 100, line);
+    }
 }
 
 TEST_CASE("of an error an eye sees each tile's share, and notices it from a hundredth of the contrast on") {
