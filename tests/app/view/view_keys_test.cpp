@@ -86,12 +86,15 @@ TEST_CASE_FIXTURE(AtWork,
     window.rest();
     window.click("b.ply", PanelPage::kScenes, (work.path / "two").string());
     window.await("two/b.ply");
+    window.click("favourite b.ply", PanelPage::kScenes, (work.path / "two").string());
     hands("key o");
     window.await("shows c.ply");
     // Its end closes the dialog.
     dialogDoes(work, "exec sleep 600");
     hands("key o");
     window.end();
+    CHECK(textIn(work.base / "config/binosplat/favourite-scenes.txt") ==
+          (work.path / "two/b.ply").string() + "\n");
 
     // Without a scene, it shows a room and the list of scenes.
     std::string alone = viewOnDesk("");
