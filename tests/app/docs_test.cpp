@@ -130,7 +130,7 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
     }
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "fish completes what is typed, and zsh can read its completion") {
+TEST_CASE_FIXTURE(test::AtWork, "fish and zsh complete what is typed") {
     if (!test::isInstalled("fish", "fish") || !test::isInstalled("zsh", "zsh")) { return; }
     work.write("complete.fish", documentOf("fish") +
                                     "for words in re 'render --mode pre' 'compare --lp' 'render --path pos'\n"
@@ -138,9 +138,24 @@ TEST_CASE_FIXTURE(test::AtWork, "fish completes what is typed, and zsh can read 
     work.write("poses.csv", "x");
     CHECK(work.runCommand("fish --no-config complete.fish").output ==
           "render\npredicted\n--lpips\nposes.csv\n");
-    work.write("complete.zsh", documentOf("zsh"));
-    const Outcome zsh = work.runCommand("zsh -f -n complete.zsh");
+    // In a terminal of its own, with a key that records what a line was completed to.
+    work.write("_binosplat", documentOf("zsh"));
+    work.write("complete.zsh", R"(zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell 'PS1= fpath=($PWD $fpath); autoload -Uz compinit; compinit -D -u'
+zpty -w shell 'record() { zle complete-word; print -r -- "$BUFFER" >>completed; BUFFER= }'
+zpty -w shell 'zle -N record; bindkey ^T record'
+for words in re 'render --mode pre' 'compare --lp' 'render --path pos'; do
+    zpty -n -w shell "binosplat $words"$'\C-t'
+done
+zpty -w shell exit
+while zpty -r shell line; do :; done
+)");
+    const Outcome zsh = work.runCommand("timeout 60 zsh -f complete.zsh");
     CHECK(these(zsh.exit_code, zsh.errors) == these(0, ""));
+    CHECK(work.bytesOf("completed") ==
+          "binosplat render \nbinosplat render --mode predicted \nbinosplat compare --lpips \n"
+          "binosplat render --path poses.csv \n");
 }
 
 TEST_CASE_FIXTURE(test::AtWork, "groff shows the man page, with every command and every option of it") {
