@@ -305,9 +305,12 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
     CHECK_FALSE(without.says("the lenses hide"));
     // In a picture for either eye, both lenses hide no tile.
     const std::vector<std::string> said = with.lines(": the lenses hide ");
-    REQUIRE(said.size() >= 2);
+    REQUIRE_FALSE(said.empty());
     CHECK(std::stod(said[0].substr(6)) == between(50.0 * looks[0] + 5, 50.0 * shared));
-    CHECK(contains(said[0], ": the lenses hide 21 and 21 of 169 tiles"));
+    // Each mask touches its view's edges.
+    for (const std::string& line : {said.front(), said.back()}) {
+        CHECK(contains(line, ": the lenses hide 21 and 21 of 169 tiles"));
+    }
     for (std::size_t look = 0; look < looks.size(); ++look) {
         const std::size_t frame = with.pictureAt(looks[look]);
         for (const int side : {kLeft, kRight}) {
@@ -341,12 +344,13 @@ TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for") {
         CHECK(run.lines("the OpenXR runtime lost ").size() == (lost.empty() ? 0 : 1));
         return run.lines(words);
     };
-    const std::string hides = ": the lenses hide ";
-    // The mask for the new angles, announced by an event (XrEventDataVisibilityMaskChangedKHR).
-    const std::vector<std::string> told = lines("", acts, hides);
-    // For the old angles, for the new ones with the old mask, and with their own mask.
-    CHECK(told.size() == 3);
-    CHECK(lines("BINOSPLAT_XR_LOSE=1000031001", acts, hides) == told);
+    // The mask for the new angles, announced by an event (XrEventDataVisibilityMaskChangedKHR). With the old
+    // one, other tiles would be hidden.
+    for (const std::string lost : {"", "BINOSPLAT_XR_LOSE=1000031001"}) {
+        const std::vector<std::string> told = lines(lost, acts, ": the lenses hide ");
+        REQUIRE_FALSE(told.empty());
+        CHECK(contains(told.back(), " 21 and 21 of 169 tiles"));
+    }
     // Another rate, which the frames' periods alone would not show: it is asked for once more.
     CHECK(lines("BINOSPLAT_XR_LOSE=1000101000 BINOSPLAT_XR_FAULT=xrGetDisplayRefreshRateFB:-2:1:1",
                 kSmall + "at 0.3 rate 90.5\nat 0.6 exit\n", "going on without the display's refresh rate")
