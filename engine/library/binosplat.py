@@ -91,7 +91,14 @@ _NOT_READY = 1
 
 
 def _open_library():
-    library = ctypes.CDLL(os.environ.get("BINOSPLAT_LIBRARY", "libbinosplat.so.0"))
+    # That of the same installation, if there is one, which may be in a folder that the loader does not search.
+    name = "libbinosplat.so.0"
+    installed = os.path.normpath(os.path.join(os.path.abspath(__file__), "../../..", name))
+    file = os.environ.get("BINOSPLAT_LIBRARY") or (installed if os.path.exists(installed) else name)
+    try:
+        library = ctypes.CDLL(file)
+    except OSError as error:
+        raise ImportError(f"{error}; BINOSPLAT_LIBRARY may name the file {name}") from None
     library.bsp_error_text.restype = ctypes.c_char_p
     library.bsp_device_name.restype = ctypes.c_char_p
     for name, arguments in {
