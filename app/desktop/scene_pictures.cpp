@@ -192,9 +192,11 @@ void ScenePictures::writeFile(const WindowLayout& layout) {
     settings.mode = both ? Mode::kShared : Mode::kMono;
     settings.keep_classes = false;
     scenes_.draw(curtain_.isAway());  // of the other one, if it fills the window
-    writer_.begin(
-        scenes_.shotOf(scenes_.seenFromDrawn(eyesOf(drawn_.camera, sight, layout.area_px)), settings),
-        scenes_.drawn()->name);
+    PictureShot shot =
+        scenes_.shotOf(scenes_.seenFromDrawn(eyesOf(drawn_.camera, sight, layout.area_px)), settings);
+    if (smooths()) { shot.smoothen(); }
+    writer_.begin(std::move(shot), scenes_.drawn()->name);
+    say_("saving a picture");
     scenes_.draw(false);
 }
 

@@ -296,7 +296,7 @@ std::span<const OptionRow<ViewOptions>> viewRows() {
         {{"desktop", "", kView, "", "show the scene in a window, even if there is a headset"},
          field::flag<&ViewOptions::desktop>()},
         {{"headset-only", "", kView, "",
-          "if there is no headset, end with exit code 3 instead of showing the scene in a window"},
+          "never open a window: wait for a headset, and end with exit code 3 if there is no OpenXR runtime"},
          field::flag<&ViewOptions::headset_only>()},
         {{"frames", "", kView, "N",
           "stop after N frames of the scene; those before it is loaded do not count", "never"},

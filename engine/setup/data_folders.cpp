@@ -20,4 +20,14 @@ std::vector<fs::path> dataFolders() {
     return folders;
 }
 
+fs::path givenOrShipped(const fs::path& name) {
+    if (name.empty() || *name.begin() != "configs") { return name; }
+    std::error_code unknown;
+    if (fs::exists(name, unknown)) { return name; }
+    for (const fs::path& root : dataFolders()) {
+        if (fs::exists(root / name, unknown)) { return root / name; }
+    }
+    return name;
+}
+
 }  // namespace binosplat

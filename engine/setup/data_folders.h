@@ -12,5 +12,8 @@ namespace binosplat {
 // folders above the program (a build inside the source tree), and ../share/binosplat next to its folder (an
 // installed program).
 std::vector<std::filesystem::path> dataFolders();
+// `name`; but if it is configs/..., and there is no such file here, that of the first of these folders that
+// has one.
+std::filesystem::path givenOrShipped(const std::filesystem::path& name);
 
 }  // namespace binosplat

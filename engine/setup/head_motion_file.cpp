@@ -1,5 +1,6 @@
 // Head motion files in the camera's axes.
 #include "engine/error.h"
+#include "engine/setup/data_folders.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/text_file.h"
 #include "xr/simulated/files/file_words.h"
@@ -22,8 +23,9 @@ HeadMotion parseHeadMotion(std::string_view text, const std::string& file, Motio
 }
 
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes) {
-    return parseHeadMotion(readTextFile(path, "a CSV file of head motion", kMostRecordingBytes),
-                           path.string(), axes);
+    return parseHeadMotion(
+        readTextFile(givenOrShipped(path), "a CSV file of head motion", kMostRecordingBytes), path.string(),
+        axes);
 }
 
 }  // namespace binosplat

@@ -2,6 +2,7 @@
 #include "engine/setup/settings.h"
 
 #include "engine/error.h"
+#include "engine/setup/data_folders.h"
 #include "engine/setup/text_file.h"
 #include "xr/simulated/files/toml_guard.h"
 
@@ -88,7 +89,7 @@ std::string Setting::text() const {
 
 std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
     const std::string file = path.string();
-    const std::string text = readTextFile(path, "a TOML file");
+    const std::string text = readTextFile(givenOrShipped(path), "a TOML file");
     if (const auto found = files::findUnreadableToml(text)) {
         fail("{}:{}: {}", file, found->line, found->problem);
     }
