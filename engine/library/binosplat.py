@@ -91,7 +91,7 @@ _NOT_READY = 1
 
 
 def _open_library():
-    # That of the same installation, if there is one, which may be in a folder that the loader does not search.
+    # That of the same installation, if there is one: the loader may not search its folder.
     name = "libbinosplat.so.0"
     installed = os.path.normpath(os.path.join(os.path.abspath(__file__), "../../..", name))
     file = os.environ.get("BINOSPLAT_LIBRARY") or (installed if os.path.exists(installed) else name)

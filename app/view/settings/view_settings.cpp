@@ -112,8 +112,7 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
             field::number<&S::window_plane>(0.1, 10.0)),
         row("window-smooth", "CHOICE",
             "in a window: once nothing changes, each pixel is the mean of four; auto: if a picture takes "
-            "less "
-            "than a second",
+            "less than a second",
             field::named<&S::window_smooth>({"auto", "off", "on"})),
     };
     return rows;
