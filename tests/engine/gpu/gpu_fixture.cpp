@@ -23,10 +23,10 @@ const Kernel& Gpu::kernel(const std::string& shader, std::uint32_t push_bytes,
                           const std::vector<std::uint32_t>& constants) {
     // Made after the device, and destroyed before it.
     static std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> made;
-    const auto found = made.find({shader, constants});
+    std::pair variant(shader, constants);
+    const auto found = made.find(variant);
     if (found != made.end()) { return found->second; }
-    return made.emplace(std::pair(shader, constants), Kernel(context_, shader, push_bytes, constants))
-        .first->second;
+    return made.emplace(std::move(variant), Kernel(context_, shader, push_bytes, constants)).first->second;
 }
 
 void Gpu::write(const Buffer& buffer, std::span<const std::byte> bytes) {

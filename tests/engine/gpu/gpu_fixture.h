@@ -71,6 +71,18 @@ public:
         record(commands_);
         commands_.submitAndWait();
     }
+    // A kernel alone.
+    void dispatch(const Kernel& kernel, const auto& pass, glm::uvec2 groups) {
+        run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
+    }
+    void dispatchOver(const Kernel& kernel, const auto& pass, std::uint64_t items,
+                      gpu::uint group_items = gpu::kGroupSize) {
+        run([&](Commands& commands) { commands.dispatchOver(kernel, pass, items, group_items); });
+    }
+    void dispatchIndirect(const Kernel& kernel, const auto& pass, const Buffer& sizes,
+                          std::uint64_t offset_bytes) {
+        run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, sizes, offset_bytes); });
+    }
 
 private:
     void write(const Buffer& buffer, std::span<const std::byte> bytes);
@@ -80,6 +92,12 @@ private:
     Commands commands_;
     std::size_t messages_before_;
 };
+
+inline std::vector<std::uint32_t> numbersUpTo(std::size_t end) {
+    std::vector<std::uint32_t> numbers(end);
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    return numbers;
+}
 
 // A list of `needed` items with capacity `capacity`, as shaders/lib/list.glsl makes it.
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity);
