@@ -2,20 +2,20 @@
 // structs of addresses.
 #pragma once
 
+#include "engine/gpu/context.h"
+#include "shaders/embedded_shaders.h"
 #include "tests/suite.h"
 
 namespace binosplat::test {
 
-struct Field {
-    std::string name;
-    std::size_t offset, bytes;
-    bool operator==(const Field&) const = default;
-};
-
 struct Layout {
     std::string name;
-    std::size_t bytes;
-    std::vector<Field> fields;
+    std::size_t bytes = 0;
+    std::string fields = {}, names = {};  // field by field, where and how long it is, and its name
+
+    void add(std::size_t offset, std::size_t field_bytes) {
+        fields += fmt::format("{}+{} ", offset, field_bytes);
+    }
 };
 
 // Calls `use` with each instruction: (length << 16 | opcode), and operands. Before these are five words.
@@ -26,10 +26,32 @@ void forEachInstruction(std::span<Word> words, const Use& use) {
     }
 }
 
+// Kernels that are made from now on have this shader with each of its instructions changed by `change`.
+template <typename Change>
+void changeShader(const Context& context, const std::string& name, const Change& change) {
+    const auto embedded = embeddedShader(name);
+    std::vector<std::uint32_t>& words = context.replacedShaders()[name];
+    words.assign(embedded.begin(), embedded.end());
+    forEachInstruction(std::span(words), change);
+}
+
 class CompiledShader {
+    using Words = std::span<const std::uint32_t>;
+
 public:
-    explicit CompiledShader(std::span<const std::uint32_t> words) {
-        forEachInstruction(words, [&](Words whole) { read(whole[0] & 0xffff, whole.subspan(1)); });
+    explicit CompiledShader(Words words) {
+        std::map<std::uint32_t, std::vector<Words>> declared;  // by opcode
+        bool in_function = false;
+        forEachInstruction(words, [&](Words whole) {
+            const std::uint32_t opcode = whole[0] & 0xffff;
+            in_function = in_function || opcode == kFunction;
+            const Words operands = whole.subspan(1);
+            in_function ? use(opcode, operands) : declared[opcode].push_back(operands);
+            if (opcode == kSpecConstantComposite) { made_of_.emplace_back(operands[1], operands.subspan(2)); }
+            if (opcode == kSpecConstantOp) { made_of_.emplace_back(operands[1], operands.subspan(3)); }
+        });
+        readDecorations(declared);
+        readTypes(declared);
         // A value computed only from constants counts as read if something computed from it is read; each is
         // computed from earlier ones.
         for (auto made = made_of_.rbegin(); made != made_of_.rend(); ++made) {
@@ -42,21 +64,21 @@ public:
     [[nodiscard]] std::vector<Layout> layouts() const {
         std::vector<Layout> layouts;
         for (const auto& [id, offsets] : offsets_) {
-            const auto stride = strides_.find(id);
-            Layout layout{nameOf(id), stride != strides_.end() ? stride->second : 0, {}};
+            Layout& layout = layouts.emplace_back(Layout{nameOf(id)});
+            if (strides_.contains(id)) { layout.bytes = strides_.at(id); }
             for (const auto& [member, offset] : offsets) {
-                layout.fields.push_back(
-                    {member_names_.at(id).at(member), offset, bytesOf(structs_.at(id)[member])});
+                layout.add(offset, bytesOf(structs_.at(id)[member]));
+                layout.names += member_names_.at(id).at(member) + " ";
             }
-            layouts.push_back(std::move(layout));
         }
         return layouts;
     }
     // The struct of the push constants.
     [[nodiscard]] std::string pushStruct() const {
-        const auto push =
-            std::ranges::find_if(structs_, [&](const auto& one) { return nameOf(one.first) == "Push"; });
-        return push != structs_.end() ? nameOf(push->second[0]) : "";
+        for (const auto& [id, members] : structs_) {
+            if (nameOf(id) == "Push") { return nameOf(members[0]); }
+        }
+        return {};
     }
 
     // The names of the constants that the shader declares, by constant_id, and the constant_ids of those that
@@ -91,12 +113,12 @@ public:
 
     // Addresses that are loaded as if they might not be aligned to eight bytes.
     [[nodiscard]] std::size_t looseAddresses() const {
-        return static_cast<std::size_t>(std::ranges::count_if(
-            loosely_loaded_, [&](std::uint32_t type) { return addresses_.contains(type); }));
+        std::size_t loose = 0;
+        for (const std::uint32_t type : loosely_loaded_) { loose += addresses_.contains(type); }
+        return loose;
     }
 
 private:
-    using Words = std::span<const std::uint32_t>;
     static constexpr std::uint32_t kName = 5, kMemberName = 6, kExtInst = 12, kTypeInt = 21, kTypeFloat = 22,
                                    kTypeVector = 23, kTypeArray = 28, kTypeRuntimeArray = 29,
                                    kTypeStruct = 30, kTypePointer = 32, kConstant = 43,
@@ -105,63 +127,40 @@ private:
                                    kVectorShuffle = 79, kCompositeExtract = 81, kCompositeInsert = 82,
                                    kLoopMerge = 246, kSelectionMerge = 247, kSwitch = 251;
 
-    void read(std::uint32_t opcode, Words operands) {
-        constexpr std::uint32_t kSpecId = 1, kArrayStride = 6, kBuiltIn = 11, kOffset = 35;  // decorations
-        constexpr std::uint32_t kWorkgroupSize = 25, kFunctionStorage = 7, kPhysicalStorage = 5349;
-        in_function_ = in_function_ || opcode == kFunction;
-        if (in_function_) { return use(opcode, operands); }
-        switch (opcode) {
-            case kName:
-                names_[operands[0]] = textOf(operands.subspan(1));
-                break;
-            case kMemberName:
-                member_names_[operands[0]][operands[1]] = textOf(operands.subspan(2));
-                break;
-            case kDecorate:
-                if (operands[1] == kSpecId) { constants_[operands[0]] = operands[2]; }
-                if (operands[1] == kBuiltIn && operands[2] == kWorkgroupSize) { used_.insert(operands[0]); }
-                if (operands[1] == kArrayStride) { array_strides_[operands[0]] = operands[2]; }
-                break;
-            case kMemberDecorate:
-                if (operands[2] == kOffset) { offsets_[operands[0]][operands[1]] = operands[3]; }
-                break;
-            case kTypeInt:
-            case kTypeFloat:
-                bytes_[operands[0]] = operands[1] / 8;
-                break;
-            case kTypeVector:
-                bytes_[operands[0]] = bytes_[operands[1]] * operands[2];
-                break;
-            case kConstant:
-                numbers_[operands[1]] = operands[2];
-                break;
-            case kSpecConstantComposite:
-                made_of_.emplace_back(operands[1], std::vector(operands.begin() + 2, operands.end()));
-                break;
-            case kSpecConstantOp:
-                made_of_.emplace_back(operands[1], std::vector(operands.begin() + 3, operands.end()));
-                break;
-            case kTypeArray:
-                used_.insert(operands[2]);
-                elements_[operands[0]] = operands[1];
-                // An array within a struct; its stride shows that it is laid out.
-                if (array_strides_.contains(operands[0])) {
-                    bytes_[operands[0]] = array_strides_[operands[0]] * numbers_[operands[2]];
-                }
-                break;
-            case kTypeRuntimeArray:
-                elements_[operands[0]] = operands[1];
-                strides_[operands[1]] = array_strides_[operands[0]];
-                break;
-            case kTypeStruct:
-                structs_[operands[0]].assign(operands.begin() + 1, operands.end());
-                break;
-            case kTypePointer:
-                if (operands[1] == kPhysicalStorage) { addresses_.insert(operands[0]); }
-                if (operands[1] == kFunctionStorage) { local_pointers_[operands[0]] = operands[2]; }
-                break;
-            default:
-                break;
+    void readDecorations(std::map<std::uint32_t, std::vector<Words>>& declared) {
+        constexpr std::uint32_t kSpecId = 1, kArrayStride = 6, kBuiltIn = 11, kOffset = 35,
+                                kWorkgroupSize = 25;
+        for (const Words w : declared[kName]) { names_[w[0]] = textOf(w.subspan(1)); }
+        for (const Words w : declared[kMemberName]) { member_names_[w[0]][w[1]] = textOf(w.subspan(2)); }
+        for (const Words w : declared[kDecorate]) {
+            if (w[1] == kSpecId) { constants_[w[0]] = w[2]; }
+            if (w[1] == kBuiltIn && w[2] == kWorkgroupSize) { used_.insert(w[0]); }
+            if (w[1] == kArrayStride) { array_strides_[w[0]] = w[2]; }
+        }
+        for (const Words w : declared[kMemberDecorate]) {
+            if (w[2] == kOffset) { offsets_[w[0]][w[1]] = w[3]; }
+        }
+    }
+    void readTypes(std::map<std::uint32_t, std::vector<Words>>& declared) {
+        constexpr std::uint32_t kFunctionStorage = 7, kPhysicalStorage = 5349;
+        for (const Words w : declared[kTypeInt]) { bytes_[w[0]] = w[1] / 8; }
+        for (const Words w : declared[kTypeFloat]) { bytes_[w[0]] = w[1] / 8; }
+        for (const Words w : declared[kTypeVector]) { bytes_[w[0]] = bytes_[w[1]] * w[2]; }
+        for (const Words w : declared[kConstant]) { numbers_[w[1]] = w[2]; }
+        for (const Words w : declared[kTypeArray]) {
+            used_.insert(w[2]);
+            elements_[w[0]] = w[1];
+            // An array within a struct; its stride shows that it is laid out.
+            if (array_strides_.contains(w[0])) { bytes_[w[0]] = array_strides_[w[0]] * numbers_[w[2]]; }
+        }
+        for (const Words w : declared[kTypeRuntimeArray]) {
+            elements_[w[0]] = w[1];
+            strides_[w[1]] = array_strides_[w[0]];
+        }
+        for (const Words w : declared[kTypeStruct]) { structs_[w[0]].assign(w.begin() + 1, w.end()); }
+        for (const Words w : declared[kTypePointer]) {
+            if (w[1] == kPhysicalStorage) { addresses_.insert(w[0]); }
+            if (w[1] == kFunctionStorage) { local_pointers_[w[0]] = w[2]; }
         }
     }
 
@@ -195,9 +194,7 @@ private:
 
     [[nodiscard]] bool holdsAddress(std::uint32_t type) const {
         if (addresses_.contains(type)) { return true; }
-        if (const auto array = elements_.find(type); array != elements_.end()) {
-            return holdsAddress(array->second);
-        }
+        if (elements_.contains(type)) { return holdsAddress(elements_.at(type)); }
         const auto found = structs_.find(type);
         return found != structs_.end() &&
                std::ranges::any_of(found->second, [&](std::uint32_t member) { return holdsAddress(member); });
@@ -208,11 +205,9 @@ private:
             const auto last = static_cast<std::uint32_t>(found->second.size() - 1);
             return offsets_.at(type).at(last) + bytesOf(found->second[last]);
         }
-        const auto found = bytes_.find(type);
-        return found != bytes_.end() ? found->second : 8;  // a pointer
+        return bytes_.contains(type) ? bytes_.at(type) : 8;  // a pointer
     }
 
-    bool in_function_ = false;
     std::map<std::uint32_t, std::string> names_;
     std::map<std::uint32_t, std::map<std::uint32_t, std::string>> member_names_;
     std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> offsets_;
@@ -220,7 +215,7 @@ private:
     std::map<std::uint32_t, std::size_t> bytes_, strides_, array_strides_;
     std::map<std::uint32_t, std::uint32_t> constants_, elements_, local_pointers_;
     std::map<std::uint32_t, std::vector<std::uint32_t>> structs_;
-    std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> made_of_;
+    std::vector<std::pair<std::uint32_t, Words>> made_of_;
     std::vector<std::uint32_t> loosely_loaded_;
     std::set<std::uint32_t> used_, addresses_, result_types_;
 };
