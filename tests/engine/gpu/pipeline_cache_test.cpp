@@ -13,9 +13,7 @@ vk::PhysicalDeviceProperties someDevice() {
     vk::PhysicalDeviceProperties device;
     device.vendorID = 0x1234;
     device.deviceID = 7;
-    for (std::size_t i = 0; i < VK_UUID_SIZE; ++i) {
-        device.pipelineCacheUUID[i] = static_cast<std::uint8_t>(i + 1);
-    }
+    std::iota(device.pipelineCacheUUID.begin(), device.pipelineCacheUUID.end(), std::uint8_t{1});
     return device;
 }
 
@@ -51,21 +49,19 @@ TEST_CASE("what is kept comes back; a file that is cut off, changed or another d
     CHECK(unsealPipelineCache(file, device) == someData(device));
     for (const std::size_t bytes :
          {std::size_t{0}, std::size_t{1}, std::size_t{31}, std::size_t{40}, file.size() - 1}) {
-        CHECK(unsealPipelineCache(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(bytes)),
-                                  device)
-                  .empty());
+        Bytes cut = file;
+        cut.resize(bytes);
+        CHECK(unsealPipelineCache(cut, device).empty());
     }
     for (const std::size_t at : {std::size_t{0}, std::size_t{500}, file.size() - 1}) {
         Bytes changed = file;
         changed[at] ^= 1;
         CHECK(unsealPipelineCache(changed, device).empty());
     }
-    auto other = device;
-    other.deviceID = 8;
-    CHECK(unsealPipelineCache(file, other).empty());
-    other = device;
-    other.pipelineCacheUUID[3] ^= 1;
-    CHECK(unsealPipelineCache(file, other).empty());
+    auto newer = device, updated = device;
+    newer.deviceID = 8;
+    updated.pipelineCacheUUID[3] ^= 1;
+    for (const auto& other : {newer, updated}) { CHECK(unsealPipelineCache(file, other).empty()); }
 }
 
 TEST_CASE("it is kept in the user's cache folder, or where the environment says") {
