@@ -57,8 +57,6 @@ struct SceneOnDevice {
     SceneOnDevice(Gpu& gpu, const Scene& host_scene, const std::vector<Eye>& host_eyes, double near)
         : scene(gpu.context(), host_scene), eyes(uploadEyes(gpu, host_eyes, near)) {}
 
-    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyeViews() const { return eyes.address<gpu::EyeView>(); }
-
     GpuScene scene;
     Buffer eyes;
 };
@@ -80,16 +78,13 @@ inline std::pair<float, float> depthsOfKey(std::uint32_t key, float near) {
     const std::uint32_t first_exact = std::bit_cast<std::uint32_t>(0.5f * near) | 0x80000000u;
     const std::uint32_t first_key = (first_exact >> gpu::kNearKeyShift) + 1,
                         last_key = first_key + gpu::kExactDepthKeys;
-    if (key < first_key) {
-        const std::uint32_t first = key << gpu::kNearKeyShift;
-        return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kNearKeyShift) - 1)};
-    }
-    if (key < last_key) {
-        return {floatOfSortable(first_exact + key - first_key),
-                floatOfSortable(first_exact + key - first_key)};
-    }
-    const std::uint32_t first = first_exact + gpu::kExactDepthKeys + ((key - last_key) << gpu::kFarKeyShift);
-    return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kFarKeyShift) - 1)};
+    const auto range = [](std::uint32_t first, std::uint32_t shift) {
+        return std::pair(floatOfSortable(first), floatOfSortable(first + (1u << shift) - 1));
+    };
+    if (key < first_key) { return range(key << gpu::kNearKeyShift, gpu::kNearKeyShift); }
+    if (key < last_key) { return range(first_exact + key - first_key, 0); }
+    return range(first_exact + gpu::kExactDepthKeys + ((key - last_key) << gpu::kFarKeyShift),
+                 gpu::kFarKeyShift);
 }
 
 // ProjectedSplat::opacity (-log2, negative if there is no reference) and ::colour (three half floats).
@@ -164,22 +159,20 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device,
         gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
         gpu.upload("pairs", std::vector{gpu::ListState{}}),
         gpu.upload("target", std::vector{state})};
-    gpu::ProjectPass pass{};
-    pass.chunks = device.scene.chunks();
-    pass.eyes = device.eyeViews();
-    pass.order = result.order.address<gpu::uint>();
-    pass.visible = result.list.address<gpu::ListState>();
-    pass.splats = result.splats.address<gpu::ProjectedSplat>();
-    pass.tile_sets = result.tile_sets.address<gpu::uvec2>();
-    pass.group_sums = result.group_sums.address<gpu::uint>();
-    pass.pairs = result.pairs.address<gpu::ListState>();
-    pass.capacity = pair_capacity;
-    pass.targets = result.target.address<gpu::TargetState>();
-    pass.chunk_bits = device.scene.chunkBits();
-    pass.is_dimmed = device.scene.traits().is_dimmed;
-    gpu.run([&](Commands& commands) {
-        commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block));
-    });
+    const gpu::ProjectPass pass{.chunks = device.scene.chunks(),
+                                .eyes = at(device.eyes),
+                                .order = at(result.order),
+                                .visible = at(result.list),
+                                .splats = at(result.splats),
+                                .tile_sets = at(result.tile_sets),
+                                .group_sums = at(result.group_sums),
+                                .pairs = at(result.pairs),
+                                .targets = at(result.target),
+                                .chunk_bits = device.scene.chunkBits(),
+                                .splats_apart = 0,
+                                .capacity = pair_capacity,
+                                .is_dimmed = device.scene.traits().is_dimmed};
+    gpu.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block));
     return result;
 }
 

@@ -1,7 +1,6 @@
 // Facts about the passes over a scene, cull_pages, cull and compact, each started from the output of the
 // twin's previous pass.
 #include "engine/passes/passes.h"
-#include "shaders/embedded_shaders.h"
 #include "tests/engine/gpu/compiled_shader.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/scene_pages.h"
@@ -38,66 +37,47 @@ std::vector<Eye> eyesAbout(const ViewedScene& view, int count) {
     return eyes;
 }
 
-// Pages and eyes on the device.
-class Pages {
-public:
-    struct Found {
-        std::vector<std::uint32_t> list;
-        gpu::ListState state;
-    };
-
-    Pages(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape,
-          const std::vector<Eye>& eyes, const Kernel* kernel = nullptr)
-        : gpu_(gpu),
-          kernel_(kernel != nullptr ? *kernel : gpu.kernel(CullPagesKernel{.splat_kind = shape})),
-          count_(static_cast<gpu::uint>(pages.size())) {
-        table_ = gpu.upload("pages", pages);
-        eyes_ = uploadEyes(gpu, eyes, kSettings.near);
-        bits_ = gpu.allocate<gpu::uint>("bits", (pages.size() + 31) / 32);
-        offsets_ = gpu.allocate<gpu::uint>("offsets", (pages.size() + 31) / 32);
-        list_ = gpu.allocate<gpu::uint>("list", pages.size() + gpu::kSumRuns);
-        state_ = gpu.upload("state", std::vector{gpu::ListState{}});
-    }
-
-    // For the eyes from `first` on.
-    Found cull(std::size_t first, std::size_t eyes) {
-        const gpu::CullPagesPass pass{.pages = table_.address<gpu::ScenePage>(),
-                                      .eyes = eyes_.address<gpu::EyeView>(),
-                                      .page_bits = bits_.address<gpu::uint>(),
-                                      .word_offsets = offsets_.address<gpu::uint>(),
-                                      .page_list = list_.address<gpu::uint>(),
-                                      .visible_pages = state_.address<gpu::ListState>(),
-                                      .page_count = count_,
-                                      .first_eye = static_cast<gpu::uint>(first),
-                                      .eye_count = static_cast<gpu::uint>(eyes)};
-        gpu_.run([&](Commands& commands) { commands.dispatchOver(kernel_, pass, count_); });
-        const auto state = gpu_.readBack<gpu::ListState>(state_, 1)[0];
-        return {listed(gpu_.readBack<gpu::uint>(list_, count_ + gpu::kSumRuns), state.count), state};
-    }
-
-private:
-    // In the order in which lib/block.glsl finds them.
-    [[nodiscard]] std::vector<std::uint32_t> listed(const std::vector<std::uint32_t>& list,
-                                                    std::uint32_t visible) const {
-        const std::uint32_t groups = (count_ + gpu::kGroupSize - 1) / gpu::kGroupSize;
-        const bool one_run = groups <= gpu::kMostPageGroupsInOneRun;
-        const std::uint32_t length = one_run ? groups : (groups + gpu::kSumRuns - 1) / gpu::kSumRuns,
-                            runs = (groups + length - 1) / length;
-        std::vector<std::uint32_t> found;
-        for (std::uint32_t run = 0; run < runs; ++run) {
-            const std::uint32_t begin = one_run ? 0 : list[count_ + run],
-                                end = run + 1 < runs ? list[count_ + run + 1] : visible;
-            const auto first = list.begin() + run * length * gpu::kGroupSize;
-            found.insert(found.end(), first, first + (end - begin));
-        }
-        return found;
-    }
-
-    Gpu& gpu_;
-    const Kernel& kernel_;
-    gpu::uint count_;
-    Buffer table_, eyes_, bits_, offsets_, list_, state_;
+struct FoundPages {
+    std::vector<std::uint32_t> list;
+    gpu::ListState state;
 };
+// Runs cull_pages for `eye_count` eyes from `first_eye` on.
+FoundPages cullPagesOnDevice(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape,
+                             const std::vector<Eye>& eyes, std::size_t first_eye, std::size_t eye_count,
+                             const Kernel* other_kernel = nullptr) {
+    const auto count = static_cast<gpu::uint>(pages.size());
+    const Buffer table = gpu.upload("pages", pages), views = uploadEyes(gpu, eyes, kSettings.near),
+                 bits = gpu.allocate<gpu::uint>("bits", (count + 31) / 32),
+                 offsets = gpu.allocate<gpu::uint>("offsets", (count + 31) / 32),
+                 list_buffer = gpu.allocate<gpu::uint>("list", count + gpu::kSumRuns),
+                 state_buffer = gpu.upload("state", std::vector{gpu::ListState{}});
+    const gpu::CullPagesPass pass{.pages = at(table),
+                                  .eyes = at(views),
+                                  .page_bits = at(bits),
+                                  .word_offsets = at(offsets),
+                                  .page_list = at(list_buffer),
+                                  .visible_pages = at(state_buffer),
+                                  .page_count = count,
+                                  .first_eye = static_cast<gpu::uint>(first_eye),
+                                  .eye_count = static_cast<gpu::uint>(eye_count)};
+    gpu.dispatchOver(
+        other_kernel != nullptr ? *other_kernel : gpu.kernel(CullPagesKernel{.splat_kind = shape}), pass,
+        count);
+    FoundPages found{{}, gpu.readBack<gpu::ListState>(state_buffer, 1)[0]};
+    // In the order in which lib/block.glsl finds them.
+    const auto list = gpu.readBack<gpu::uint>(list_buffer, count + gpu::kSumRuns);
+    const std::uint32_t groups = (count + gpu::kGroupSize - 1) / gpu::kGroupSize;
+    const bool one_run = groups <= gpu::kMostPageGroupsInOneRun;
+    const std::uint32_t length = one_run ? groups : (groups + gpu::kSumRuns - 1) / gpu::kSumRuns,
+                        runs = (groups + length - 1) / length;
+    for (std::uint32_t run = 0; run < runs; ++run) {
+        const std::uint32_t begin = one_run ? 0 : list[count + run],
+                            end = run + 1 < runs ? list[count + run + 1] : found.state.count;
+        const auto first = list.begin() + run * length * gpu::kGroupSize;
+        found.list.insert(found.list.end(), first, first + (end - begin));
+    }
+    return found;
+}
 
 // A kernel as a device may compile it that does not promise to preserve NaN: there a NaN compares less,
 // greater and equal to anything. Such a device may turn any comparison of floats into the negation of its
@@ -105,10 +85,7 @@ private:
 template <typename K>
 Kernel withoutNan(Gpu& gpu, const K& variant) {
     constexpr std::uint32_t kOrderedEqual = 180, kUnorderedGreaterThanEqual = 191;
-    const auto embedded = embeddedShader(K::kShader);
-    std::vector<std::uint32_t>& words = gpu.context().replacedShaders()[K::kShader];
-    words.assign(embedded.begin(), embedded.end());
-    forEachInstruction(std::span(words), [](std::span<std::uint32_t> whole) {
+    changeShader(gpu.context(), K::kShader, [](std::span<std::uint32_t> whole) {
         const std::uint32_t opcode = whole[0] & 0xffff;
         if (opcode >= kOrderedEqual && opcode <= kUnorderedGreaterThanEqual) { whole[0] |= 1; }
     });
@@ -127,24 +104,22 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye
                     const Kernel* other_kernel = nullptr) {
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = pagesOf(count);
-    const Kernel& kernel = other_kernel != nullptr
-                               ? *other_kernel
-                               : gpu.kernel(CullKernel{.splat_kind = device.scene.splatKind()});
     const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords),
                  counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
     pass.chunks = device.scene.chunks();
-    pass.eyes = device.eyeViews();
-    pass.visible_bits = bits.address<gpu::uint>();
-    pass.group_counts = counts.address<gpu::uint>();
-    pass.visible = list.address<gpu::ListState>();
-    pass.splat_count = count;
+    pass.eyes = at(device.eyes);
+    pass.visible_bits = at(bits);
+    pass.group_counts = at(counts);
+    pass.visible = at(list);
+    pass.splat_count = pass.capacity = count;
     pass.chunk_bits = device.scene.chunkBits();
     pass.first_eye = static_cast<gpu::uint>(first_eye);
     pass.eye_count = eye_count;
-    pass.capacity = count;
-    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
+    gpu.dispatchOver(other_kernel != nullptr ? *other_kernel
+                                             : gpu.kernel(CullKernel{.splat_kind = device.scene.splatKind()}),
+                     pass, count, gpu::kCullBlock);
     return {gpu.readBack<std::uint32_t>(bits, groups * kGroupWords),
             gpu.readBack<std::uint32_t>(counts, groups), gpu.readBack<gpu::ListState>(list, 1)[0]};
 }
@@ -160,14 +135,10 @@ std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& p
         REQUIRE(page.count == twin.count);
         const double hair = 1e-4 * (1.0 + glm::length(twin.high - twin.low));
         for (int axis = 0; axis < 3; ++axis) {
-            const double low = page.low[axis], high = page.high[axis];
-            REQUIRE(low <= twin.low[axis]);
-            REQUIRE(low >= twin.low[axis] - hair);
-            REQUIRE(high >= twin.high[axis]);
-            REQUIRE(high <= twin.high[axis] + hair);
+            REQUIRE(page.low[axis] == within(twin.low[axis] - hair, twin.low[axis]));
+            REQUIRE(page.high[axis] == within(twin.high[axis], twin.high[axis] + hair));
         }
-        REQUIRE(static_cast<double>(page.reach) >= twin.reach);
-        REQUIRE(static_cast<double>(page.reach) <= 1.001 * twin.reach + 1e-5);
+        REQUIRE(page.reach == within(twin.reach, 1.001 * twin.reach + 1e-5));
     }
     REQUIRE(packed.pageCount() == pages.size());
     return pages;
@@ -175,7 +146,7 @@ std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& p
 
 // Runs cull_pages and cull from `count` places around each of the scenes.
 void checkPages(Gpu& gpu, int count) {
-    std::size_t kept = 0, left_out = 0, splats_kept = 0, pages_left_out = 0;
+    std::size_t left_out = 0, splats_kept = 0;
     std::vector<ViewedScene> scenes{viewBuiltin("builtin:atelier", {256, 192}, 20000), viewCloud({200, 150})};
     for (const bool antialiased : {false, true}) { scenes.push_back(viewGaussians({200, 150}, antialiased)); }
     for (ViewedScene& view : scenes) {
@@ -183,17 +154,16 @@ void checkPages(Gpu& gpu, int count) {
         view.scene = inMortonOrder(view.scene);
         const PackedPages packed(view.scene, traitsOf(view.scene));
         const std::vector<reference::Page> pages = boundPages(view.scene, packed);
-
         const std::vector<Eye> eyes = eyesAbout(view, count);
         const SceneOnDevice device(gpu, view.scene, eyes, kSettings.near);
-        Pages on_device(gpu, packed.pages(), device.scene.splatKind(), eyes);
         for (std::size_t e = 1; e < eyes.size(); e += 3) {
-            for (const auto& [first, many] : {std::pair(e - 1, 2), std::pair(e, 1), std::pair(e, 2)}) {
-                const Pages::Found found = on_device.cull(first, static_cast<std::size_t>(many));
+            for (const auto& [first, many] : {std::pair(e - 1, 2u), std::pair(e, 1u), std::pair(e, 2u)}) {
+                const FoundPages found =
+                    cullPagesOnDevice(gpu, packed.pages(), device.scene.splatKind(), eyes, first, many);
                 REQUIRE(found.state.count == found.list.size());
                 REQUIRE(found.state.per_item.x * found.state.per_item.y >= found.list.size());
                 REQUIRE(std::ranges::is_sorted(found.list));
-                const auto some = std::span(eyes).subspan(first, static_cast<std::size_t>(many));
+                const auto some = std::span(eyes).subspan(first, many);
                 const auto least = reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings);
                 const auto most =
                     reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings, 1e-4);
@@ -201,7 +171,7 @@ void checkPages(Gpu& gpu, int count) {
                     const bool is_found = std::ranges::binary_search(found.list, p);
                     if (least[p] != 0) { REQUIRE(is_found); }
                     if (is_found) { REQUIRE(most[p] != 0); }
-                    ++(is_found ? kept : left_out);
+                    left_out += !is_found;
                 }
                 if (many == 2) { continue; }
                 const Culled culled = cullOnDevice(gpu, device, first, 1);
@@ -210,14 +180,11 @@ void checkPages(Gpu& gpu, int count) {
                     ++splats_kept;
                     REQUIRE(std::ranges::binary_search(found.list, i / gpu::kPageSplats));
                 }
-                pages_left_out += pages.size() - found.list.size();
             }
         }
     }
-    CHECK(kept > 1000);
     CHECK(left_out > 1000);
     CHECK(splats_kept > 10000);
-    CHECK(pages_left_out > 200);
 }
 
 struct Compacted {
@@ -228,34 +195,33 @@ struct Compacted {
 // is one.
 Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& visible,
                           const std::optional<glm::dvec3>& middle) {
-    const Kernel& kernel = gpu.kernel(CompactKernel{});
     const std::uint32_t count = device.scene.splatCount();
-    const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
+    const std::size_t groups = pagesOf(count);
     std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);
     for (const std::uint32_t splat : visible) {
         bits[splat / 32] |= 1u << (splat % 32);
         ++offsets[splat / gpu::kCullBlock + 1];
     }
-    for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
+    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
     const Buffer bit_buffer = gpu.upload("bits", bits), offset_buffer = gpu.upload("offsets", offsets),
                  list = gpu.upload("list", std::vector{makeList(visible.size())});
     const Buffer keys = gpu.allocate<std::uint32_t>("keys", visible.size()),
                  splats = gpu.allocate<std::uint32_t>("splats", visible.size());
     gpu::CompactPass pass{};
     pass.chunks = device.scene.chunks();
-    pass.eyes = device.eyeViews();
+    pass.eyes = at(device.eyes);
     if (middle) {
         pass.by_distance = 1;
         pass.middle = placeOf(*middle);
     }
-    pass.visible_bits = bit_buffer.address<gpu::uint>();
-    pass.group_offsets = offset_buffer.address<gpu::uint>();
-    pass.visible = list.address<gpu::ListState>();
-    pass.keys = keys.address<gpu::uint>();
-    pass.splats = splats.address<gpu::uint>();
+    pass.visible_bits = at(bit_buffer);
+    pass.group_offsets = at(offset_buffer);
+    pass.visible = at(list);
+    pass.keys = at(keys);
+    pass.splats = at(splats);
     pass.splat_count = count;
     pass.chunk_bits = device.scene.chunkBits();
-    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
+    gpu.dispatchOver(gpu.kernel(CompactKernel{}), pass, count, gpu::kCullBlock);
     return {gpu.readBack<std::uint32_t>(keys, visible.size()),
             gpu.readBack<std::uint32_t>(splats, visible.size())};
 }
@@ -281,7 +247,7 @@ TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
                              .count = is_empty ? 0u : 5u});
             if (!is_empty && is_seen) { expected.push_back(p); }
         }
-        const Pages::Found found = Pages(*this, pages, gpu::kDiscs, {makeEye({64, 64})}).cull(0, 1);
+        const FoundPages found = cullPagesOnDevice(*this, pages, gpu::kDiscs, {makeEye({64, 64})}, 0, 1);
         CHECK(these(found.list, found.state.needed) == these(expected, expected.size()));
         const std::uint32_t groups = found.state.per_item.x * found.state.per_item.y * found.state.per_item.z;
         CHECK(groups == within(expected.size(), expected.size() + gpu::kMaxGroupsX - 1));
@@ -291,18 +257,16 @@ TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
 
 TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for them, is left to cull") {
     constexpr float kHuge = 3e38f, kNone = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const std::vector<gpu::ScenePage> pages{
         {.low = glm::vec3(-kHuge), .reach = 1.0f, .high = glm::vec3(kHuge), .count = 1},
         {.low = glm::vec3(kNone), .reach = 1.0f, .high = glm::vec3(kNone), .count = 1},
-        {.low = {-1.0f, -1.0f, -3.0f},
-         .reach = std::numeric_limits<float>::infinity(),
-         .high = {1.0f, 1.0f, 3.0f},
-         .count = 1}};
+        {.low = {-1, -1, -3}, .reach = kInfinity, .high = {1, 1, 3}, .count = 1}};
     for (const std::uint32_t shape : {gpu::kDiscs, gpu::kGaussians}) {
         const Kernel without_nan = withoutNan(*this, CullPagesKernel{.splat_kind = shape});
         for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
-            CHECK(Pages(*this, pages, shape, {makeEye({64, 64})}, kernel).cull(0, 1).list ==
-                  std::vector<std::uint32_t>{0, 1, 2});
+            CHECK(cullPagesOnDevice(*this, pages, shape, {makeEye({64, 64})}, 0, 1, kernel).list ==
+                  numbersUpTo(3));
         }
     }
 }
@@ -331,19 +295,15 @@ TEST_CASE_FIXTURE(Gpu, "cull misses no splat that either eye sees, and keeps har
         const SceneOnDevice device(*this, view.scene, {view.eye, turned(view.eye, 0.5)}, kSettings.near);
         const Culled culled = cullOnDevice(*this, device, 0, 1), turned = cullOnDevice(*this, device, 1, 1),
                      both = cullOnDevice(*this, device, 0, 2);
-        std::size_t missed = 0, kept = 0;
-        for (const reference::TilePair& pair : twin.pairs) { missed += !culled.has(twin.order[pair.splat]); }
-        for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i); }
-        CHECK(missed == 0);
-        CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
-        std::size_t wrong_counts = 0, ones = 0;
+        for (const reference::TilePair& pair : twin.pairs) { REQUIRE(culled.has(twin.order[pair.splat])); }
+        std::size_t kept = 0;
         for (std::size_t w = 0; w < culled.bits.size(); ++w) {
-            wrong_counts += !(w % kGroupWords != 0 || culled.group_offsets[w / kGroupWords] == ones);
-            ones += static_cast<std::size_t>(std::popcount(culled.bits[w]));
+            if (w % kGroupWords == 0) { REQUIRE(culled.group_offsets[w / kGroupWords] == kept); }
+            kept += static_cast<std::size_t>(std::popcount(culled.bits[w]));
             REQUIRE(both.bits[w] == (culled.bits[w] | turned.bits[w]));
         }
-        CHECK(culled.visible.count == ones);
-        CHECK(wrong_counts == 0);
+        CHECK(culled.visible.count == kept);
+        CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
         CHECK(culled.bits != turned.bits);
     }
 }

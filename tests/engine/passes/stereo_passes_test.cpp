@@ -1,12 +1,7 @@
 // Facts about the passes that reproject one eye's picture from the other's, reproject and newcomers
 // (resample: resample_test.cpp), each started from the output of the twin's previous pass. Where a place lies
 // on the border of a pixel, float32 may round to either side: there is a budget for such flips.
-#include "app/scores/metrics.h"
-#include "engine/picture/image_io.h"
-#include "tests/engine/passes/pass_stages.h"
-#include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
-#include "tests/shared_data.h"
 
 SUITE(stereo_passes) {
 
@@ -38,7 +33,6 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     Newcomers newcomers{};
     newcomers.expected =
         reference::addNewcomers(expected, target, target_pairs, source_pairs, c.dominant, kinds, c.settings);
-
     device.write(device.tile_depths, depthsOfTiles(c));
     device.write(device.tile_kinds, kindsOf(kinds));
     std::vector<gpu::uint> source_tiles(order.size(), 0);
@@ -48,9 +42,10 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     newcomers.found = device.readCounters().newcomers;
     const auto errors = device.read(device.tile_errors);
     for (std::size_t t = 0; t < errors.size(); ++t) {
-        newcomers.error += errors[t] / static_cast<double>(gpu::kErrorSteps);
+        const double error = errors[t] / static_cast<double>(gpu::kErrorSteps);
+        newcomers.error += error;
         newcomers.expected_error += expected[t];
-        newcomers.difference += std::abs(errors[t] / static_cast<double>(gpu::kErrorSteps) - expected[t]);
+        newcomers.difference += std::abs(error - expected[t]);
         newcomers.tiles += expected[t] > 0.0;
         newcomers.other_tiles += (expected[t] > 0.0) != (errors[t] > 0);
         newcomers.most = std::max(newcomers.most, errors[t]);
@@ -68,13 +63,11 @@ std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
                                                    const std::vector<gpu::uint>& errors) {
     const Eye eye = makeEye(size_px);
     const StereoCase c = computeEmpty({eye, eye});
-    std::vector<std::uint32_t> order(splats.size());
-    std::iota(order.begin(), order.end(), 0u);
     StereoOnDevice device = toDevice(gpu, c);
     device.write(device.tile_depths, depths);
     device.write(device.tile_kinds, kinds);
     device.write(device.tile_errors, errors);
-    device.addNewcomers(SceneOnDevice(gpu, makeScene(splats), {eye, eye}, 0.2), order,
+    device.addNewcomers(SceneOnDevice(gpu, makeScene(splats), {eye, eye}, 0.2), numbersUpTo(splats.size()),
                         std::vector<gpu::uint>(splats.size(), 0));
     return {device.readCounters().newcomers, device.read(device.tile_errors)};
 }
@@ -151,12 +144,11 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
         const auto expected = reference::reproject(c.dominant, c.eyes, c.settings);
         int between = 0;
         for (std::size_t x = 0; x < 40; ++x) {
-            CHECK(unpackArrival(words[x]).way == expected[x].way);
-            CHECK(unpackArrival(words[x]).spread == expected[x].spread);
-            between += expected[x].way == Arrival::kBetween;
+            const Arrival arrival = unpackArrival(words[x]);
+            CHECK(these(arrival.way, arrival.spread) == these(expected[x].way, expected[x].spread));
+            between += arrival.way == Arrival::kBetween;
         }
         CHECK(between == filled);
-        CHECK(unpackArrival(words[6]).spread == 19);
     }
 }
 
@@ -185,11 +177,9 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
                 // twin's error in the room, and 30 times in the cloud).
                 CHECK(newcomers.found >= newcomers.expected);
                 CHECK(newcomers.error >= 0.95 * newcomers.expected_error);
-                if (!whole) {
-                    CHECK(static_cast<double>(newcomers.found) <=
-                          1.1 * static_cast<double>(newcomers.expected) + 2.0);
-                    CHECK(newcomers.difference <= 0.08 * newcomers.expected_error + 0.1);
-                }
+                if (whole) { continue; }
+                CHECK(10 * newcomers.found <= 11 * newcomers.expected + 20);
+                CHECK(newcomers.difference <= 0.08 * newcomers.expected_error + 0.1);
             }
         }
     }
@@ -222,10 +212,9 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat brings to every tile, 
         c.settings.newcomer_error = large.newcomer_error;
         const Newcomers newcomers =
             findNewcomers(*this, c, std::vector(std::size_t{40} * 35, TileKind::kNone));
-        CHECK(newcomers.expected == large.splats);
-        CHECK(newcomers.found == large.splats);
-        CHECK(newcomers.tiles == within(large.least_tiles, large.most_tiles));
-        CHECK(newcomers.other_tiles == 0);
+        CHECK(these(newcomers.found, newcomers.expected) == these(large.splats, large.splats));
+        CHECK(these(newcomers.tiles, newcomers.other_tiles) ==
+              these(within(large.least_tiles, large.most_tiles), 0));
         // Fractions of steps are cut off.
         CHECK(newcomers.difference <= 1e-4 * newcomers.expected_error);
         if (large.splats == 3) { CHECK(newcomers.most == 0x7fffffffu); }
@@ -239,11 +228,8 @@ TEST_CASE_FIXTURE(Gpu,
     const glm::uvec2 size_px(64, 16);
     std::vector<Splat> splats;
     for (const double column : {6.5, 14.5, 24.5, 33.5, 56.5}) {
-        splats.push_back({{(column - 32.0) * 3.0 / 100.0, 0.0f, 3.0f},
-                          {1, 0, 0, 0},
-                          glm::vec2(0.02f),
-                          0.9f,
-                          glm::vec3(0.5f)});
+        splats.push_back(
+            {.position = {(column - 32.0) * 3.0 / 100.0, 0.0f, 3.0f}, .scale = glm::vec2(0.02f)});
     }
     const gpu::uint near = packMoving(0.5, true, 0), far = packMoving(0.25, true, 0), nothing = 0;
     const auto found = [&](const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds) {
@@ -261,87 +247,12 @@ TEST_CASE_FIXTURE(Gpu,
 
 TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds, however many add to it") {
     // A thousand discs in front of one tile, each of which alone adds more than remains.
-    const std::vector<Splat> splats(
-        1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
+    const std::vector<Splat> splats(1000, {.position = {0.0f, 0.0f, 3.0f}, .scale = glm::vec2(0.2f)});
     for (const gpu::uint before : {0x7ffffff0u, 0x7fffffffu, 0x7fff0000u}) {
         const auto [count, errors] = addTo(*this, {16, 16}, splats, {0}, {0}, {before});
         CHECK(count == splats.size());
         CHECK(errors == std::vector{0x7fffffffu});
     }
 }
-
-#ifdef BINOSPLAT_HAS_PNG
-struct Likeness {
-    double coverage, covered_db, db;
-};
-// From a picture that is moved by a disparity per pixel, 0 where that is unknown, to what another eye saw.
-Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disparity_px, const Image& truth,
-                    gpu::uint gap_px) {
-    // Eyes side by side with fx b = 1 px, so the inverse depth is the disparity in pixels.
-    gpu::WarpView view{};
-    view.rows_apart = 1;
-    view.target_from_source.shift = {-1.0f, 0.0f, 0.0f};
-    view.source_from_target.shift = {1.0f, 0.0f, 0.0f};
-    view.size_px = from.size_px;
-    view.size_tiles = tilesOf(from.size_px);
-    view.gap_px = gap_px;
-    std::vector<gpu::vec4> colours;
-    std::vector<gpu::uint> moving;
-    for (std::size_t i = 0; i < from.pixelCount(); ++i) {
-        const float* rgb = &from.values[i * static_cast<std::size_t>(from.channels)];
-        colours.emplace_back(rgb[0], rgb[1], rgb[2], 1.0f);
-        moving.push_back(disparity_px[i] > 0.0 ? packMoving(disparity_px[i], /*landed=*/true, /*spread=*/0)
-                                               : 0);
-    }
-    StereoOnDevice device(gpu, view, colours, moving, Rows::kShared);
-    device.reproject();
-    device.resample({.classes = true});
-    const auto classes = device.readClasses();
-    Image made{from.size_px, 3, {}};
-    for (const gpu::vec4& pixel : device.readAffiliated()) {
-        made.values.insert(made.values.end(), {pixel.x, pixel.y, pixel.z});
-    }
-    const double db = compare(made, truth).psnrDb(),
-                 coverage = test::share(std::ranges::count(classes, gpu::kCovered), classes.size());
-    for (std::size_t i = 0; i < made.values.size(); ++i) {
-        const std::size_t pixel = i / 3;
-        if (classes[pixel] != gpu::kCovered) {
-            made.values[i] = truth.values[pixel * static_cast<std::size_t>(truth.channels) + i % 3];
-        }
-    }
-    return {coverage, compare(made, truth).psnrDb() + 10.0 * std::log10(coverage), db};
-}
-
-TEST_CASE_FIXTURE(
-    Gpu, "a real picture moved by its true disparity is the other eye's, better than by whole pixels" *
-             test::needsSharedData() * test::nightly()) {
-    const auto data = test::sharedData();
-    if (!data) { return; }
-    // With whole pixels: 27.8 and 26.7 dB on 77 % (Scharstein and Szeliski 2003).
-    for (const auto& [name, least_db] : {std::pair("teddy", 28.3), std::pair("cones", 27.2)}) {
-        CAPTURE(name);
-        const auto folder = *data / "middlebury" / name;
-        const Image left = readPicture(folder / "im2.png"), right = readPicture(folder / "im6.png"),
-                    read = readPicture(folder / "disp2.pgm");
-        REQUIRE(left.size_px == glm::uvec2(450, 375));
-        std::vector<double> disparity_px;
-        for (std::size_t i = 0; i < read.pixelCount(); ++i) {
-            disparity_px.push_back(
-                static_cast<double>(read.values[i * static_cast<std::size_t>(read.channels)]) * 255.0 / 4.0);
-        }
-        const Likeness landed = likenessOf(*this, left, disparity_px, right, 0),
-                       filled = likenessOf(*this, left, disparity_px, right, 2);
-        CHECK(std::min(landed.covered_db, filled.covered_db) >= least_db);
-        CHECK(std::min(landed.coverage, filled.coverage) >= 0.77);
-        CHECK(filled.db >= landed.db);
-        CHECK(likenessOf(*this, left, disparity_px, left, 0).covered_db < 15.0);
-        CHECK(likenessOf(*this, right, disparity_px, left, 0).covered_db < 15.0);
-        // Less than half of a float32's last place in the column.
-        const Likeness still = likenessOf(*this, right, std::vector(disparity_px.size(), 1e-30), right, 2);
-        CHECK(still.coverage == 1.0);
-        CHECK(still.db == std::numeric_limits<double>::infinity());
-    }
-}
-#endif
 
 }  // SUITE(stereo_passes)

@@ -28,32 +28,12 @@ public:
         : gpu_(gpu),
           rows_(rows),
           view_(withRows(view, rows)),
-          view_buffer_(gpu.upload("stereo view", std::vector{view_})),
-          counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
           colours_(areHalves(rows) ? gpu.upload("dominant colours", packHalves(colours))
                                    : gpu.upload("dominant colours", colours)),
-          classes_(gpu.allocate<gpu::uint>("classes", std::size_t{view.size_tiles.x} * view.size_px.y)),
-          shown_mask_(gpu.allocate<gpu::uint>("shown mask", maskWords())),
           boxes_(gpu.allocate<gpu::PixelBox>("boxes", boxes)),
-          box_capacity_(boxes),
-          affiliated(gpu.allocate<gpu::uint>("affiliated colours", wordsPerPixel() * pixelCount())),
-          depths(gpu.allocate<gpu::uint>("affiliated depths", pixelCount())),
-          tile_kinds(gpu.allocate<gpu::uint>("tile kinds", tileCount())),
-          tile_costs(gpu.allocate<gpu::uint>("tile costs", tileCount())),
-          tile_errors(gpu.allocate<gpu::uint>("tile errors", tileCount())),
-          tile_depths(gpu.allocate<gpu::uint>("tile depths", tileCount())),
-          tile_mask(gpu.allocate<gpu::uint>("tile mask", maskWords())),
-          bins(gpu.allocate<gpu::uint>("bins", gpu::kDepthBins)) {
-        static_assert(gpu::kDepthBins == gpu::kPriceBins);
-        fill({&affiliated, &depths, &classes_, &tile_costs, &tile_depths}, kUnwritten);
-        fill({&tile_kinds, &tile_errors, &tile_mask, &bins}, 0);
-        fill({&shown_mask_}, ~0u);
-        if (isShared(rows)) {
-            writeRows({std::vector<gpu::uint>(pixelCount(), 0), moving});
-        } else {
-            moving_ = gpu.upload("moving", moving);
-            arrivals_ = gpu.upload("arrivals", std::vector<gpu::uint>(pixelCount(), 0));
-        }
+          box_capacity_(boxes) {
+        writeWords(0, std::vector<gpu::uint>(pixelCount(), 0));
+        writeWords(firstMoving(), moving);
     }
 
     // `ranges`: of the dominant eye's pairs. Arrays that the pass must clear are not clear before.
@@ -63,7 +43,9 @@ public:
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
-        fill({&tile_errors, &tile_depths, &tile_mask, &bins}, kUnwritten);
+        for (Buffer* array : {&tile_errors, &tile_depths, &tile_mask, &bins}) {
+            *array = makeArray(array->bytes() / sizeof(gpu::uint), kUnwritten);
+        }
         dispatch(WeighKernel{.rectified = rectified()},
                  gpu::WeighPass{.warp = at(view_buffer_),
                                 .ranges = at(range_buffer),
@@ -114,11 +96,11 @@ public:
         std::vector<glm::uvec2> sets;
         for (const gpu::uint tiles : dominant_tiles) { sets.emplace_back(0, tiles << 10); }
         const Buffer order_buffer = gpu_.upload("order", order),
-                     set_buffer = gpu_.upload("dominant sets of tiles", sets);
-        const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
+                     set_buffer = gpu_.upload("dominant sets of tiles", sets),
+                     lists = gpu_.upload("lists", std::vector{makeList(order.size())});
         dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
-                                    .eyes = scene.eyeViews(),
+                                    .eyes = at(scene.eyes),
                                     .warp = at(view_buffer_),
                                     .tile_depths = at(tile_depths),
                                     .order = at(order_buffer),
@@ -201,50 +183,37 @@ public:
     }
     void write(const Buffer& array, const std::vector<gpu::uint>& values) { gpu_.upload(array, values); }
 
-    [[nodiscard]] std::vector<gpu::uint> readArrivals() {
-        return isShared(rows_) ? readRows(0) : read(arrivals_);
-    }
-    [[nodiscard]] std::vector<gpu::uint> readMoving() {
-        return isShared(rows_) ? readRows(1) : read(moving_);
-    }
+    [[nodiscard]] std::vector<gpu::uint> readArrivals() { return readWords(0); }
+    [[nodiscard]] std::vector<gpu::uint> readMoving() { return readWords(firstMoving()); }
     [[nodiscard]] std::vector<gpu::vec4> readAffiliated() {
-        if (!areHalves(rows_)) { return read<gpu::vec4>(affiliated); }
-        return unpackHalves(read<gpu::uvec2>(affiliated));
+        return areHalves(rows_) ? unpackHalves(read<gpu::uvec2>(affiliated)) : read<gpu::vec4>(affiliated);
     }
     // Of a pixel's colour.
     [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
     [[nodiscard]] gpu::WarpCounters readCounters() { return read<gpu::WarpCounters>(counters_)[0]; }
     [[nodiscard]] std::vector<std::uint8_t> readClasses() {
-        const std::size_t row_words = view_.size_tiles.x;
         const auto packed = read(classes_);
-        std::vector<std::uint8_t> classes;
-        for (std::size_t y = 0; y < view_.size_px.y; ++y) {
-            for (std::size_t x = 0; x < view_.size_px.x; ++x) {
-                classes.push_back(
-                    static_cast<std::uint8_t>((packed[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
-            }
+        std::vector<std::uint8_t> classes(pixelCount());
+        for (std::size_t i = 0; i < classes.size(); ++i) {
+            classes[i] = static_cast<std::uint8_t>(packed[classWord(i)] >> classShift(i) & 3);
         }
         return classes;
     }
 
-    void writeArrivals(const std::vector<gpu::uint>& arrivals) {
-        isShared(rows_) ? writeRows({arrivals}) : gpu_.upload(arrivals_, arrivals);
-    }
+    void writeArrivals(const std::vector<gpu::uint>& arrivals) { writeWords(0, arrivals); }
     void writeClasses(const std::vector<std::uint8_t>& classes) {
-        const std::size_t row_words = view_.size_tiles.x;
-        std::vector<gpu::uint> packed(row_words * view_.size_px.y, 0);
+        std::vector<gpu::uint> packed(classes_.bytes() / sizeof(gpu::uint), 0);
         for (std::size_t i = 0; i < classes.size(); ++i) {
-            const std::size_t x = i % view_.size_px.x, y = i / view_.size_px.x;
-            packed[y * row_words + x / 16] |= gpu::uint{classes[i]} << (2 * (x % 16));
+            packed[classWord(i)] |= gpu::uint{classes[i]} << classShift(i);
         }
         gpu_.upload(classes_, packed);
     }
     void writeCounters(const gpu::WarpCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
     // One byte per tile, which is 1 if the dominant eye's lens hides it.
     void writeHidden(const std::vector<std::uint8_t>& hidden) {
-        std::vector<std::uint8_t> shown;
-        for (const std::uint8_t h : hidden) { shown.push_back(h != 0 ? 0 : 1); }
-        gpu_.upload(shown_mask_, maskOf(shown, view_.size_tiles));
+        std::vector<gpu::uint> shown = maskOf(hidden, view_.size_tiles);
+        for (gpu::uint& word : shown) { word = ~word; }
+        gpu_.upload(shown_mask_, shown);
     }
 
     // Whether pixels move along their rows.
@@ -270,58 +239,46 @@ private:
         counters.moves = 1;
         return counters;
     }
-    [[nodiscard]] std::size_t maskWords() const {
-        return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y;
+    // Two bits for each pixel, a row of a tile in a word.
+    [[nodiscard]] std::size_t classWord(std::size_t pixel) const {
+        return pixel / view_.size_px.x * view_.size_tiles.x + pixel % view_.size_px.x / 16;
     }
+    [[nodiscard]] std::size_t classShift(std::size_t pixel) const { return pixel % view_.size_px.x % 16 * 2; }
     static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kWarpGroup) {
         return static_cast<std::uint32_t>((items + group_items - 1) / group_items);
     }
     [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
     [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }
 
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const {
-        return at(isShared(rows_) ? affiliated : arrivals_);
-    }
+    // Of arrivals and, from `firstMoving` on, of moving pixels.
+    [[nodiscard]] const Buffer& words() const { return isShared(rows_) ? affiliated : own_words_; }
+    [[nodiscard]] std::size_t firstMoving() const { return isShared(rows_) ? view_.size_px.x : pixelCount(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const { return at(words()); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving() const {
-        return isShared(rows_) ? affiliated.address<gpu::uint>(sizeof(gpu::uint) * view_.size_px.x)
-                               : at(moving_);
+        return words().address<gpu::uint>(sizeof(gpu::uint) * firstMoving());
+    }
+    [[nodiscard]] std::size_t wordOf(std::size_t pixel, std::size_t first) const {
+        return first + pixel / view_.size_px.x * view_.row_words + pixel % view_.size_px.x;
+    }
+    [[nodiscard]] std::vector<gpu::uint> readWords(std::size_t first) {
+        const auto all = read(words());
+        std::vector<gpu::uint> values(pixelCount());
+        for (std::size_t i = 0; i < values.size(); ++i) { values[i] = all[wordOf(i, first)]; }
+        return values;
+    }
+    void writeWords(std::size_t first, const std::vector<gpu::uint>& values) {
+        auto all = read(words());
+        for (std::size_t i = 0; i < values.size(); ++i) { all[wordOf(i, first)] = values[i]; }
+        gpu_.upload(words(), all);
     }
 
     template <typename K>
     void dispatch(const K& variant, const typename K::Pass& pass, glm::uvec2 groups) {
-        const Kernel& kernel = gpu_.kernel(variant);
-        gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
+        gpu_.dispatch(gpu_.kernel(variant), pass, groups);
     }
-    void fill(std::initializer_list<const Buffer*> buffers, gpu::uint value) {
-        gpu_.run([&](Commands& commands) {
-            for (const Buffer* buffer : buffers) {
-                commands.buffer().fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, value);
-            }
-        });
+    [[nodiscard]] Buffer makeArray(std::size_t count, gpu::uint value) {
+        return gpu_.upload("stereo array", std::vector<gpu::uint>(count, value));
     }
-    // The first or the second part of each row of colours, with a word per pixel.
-    [[nodiscard]] std::vector<gpu::uint> readRows(std::size_t part) {
-        const std::size_t width = view_.size_px.x;
-        const auto all = read(affiliated);
-        std::vector<gpu::uint> values;
-        for (std::size_t y = 0; y < view_.size_px.y; ++y) {
-            const auto row = all.begin() + static_cast<std::ptrdiff_t>((wordsPerPixel() * y + part) * width);
-            values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(width));
-        }
-        return values;
-    }
-    // The first parts, or both.
-    void writeRows(const std::vector<std::vector<gpu::uint>>& parts) {
-        const std::size_t width = view_.size_px.x;
-        auto all = read(affiliated);
-        for (std::size_t p = 0; p < parts.size(); ++p) {
-            for (std::size_t i = 0; i < parts[p].size(); ++i) {
-                all[(wordsPerPixel() * (i / width) + p) * width + i % width] = parts[p][i];
-            }
-        }
-        gpu_.upload(affiliated, all);
-    }
-
     // Where the dominant eye's lens hides parts; null if nowhere.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> shownMask(bool hidden_tiles) const {
         return hidden_tiles ? at(shown_mask_) : gpu::DeviceAddress<gpu::uint>{};
@@ -330,13 +287,24 @@ private:
     Gpu& gpu_;
     Rows rows_;
     gpu::WarpView view_;
-    Buffer view_buffer_, counters_, colours_, classes_, shown_mask_, boxes_;
-    Buffer moving_, arrivals_;  // if rows have buffers of their own
+    Buffer view_buffer_ = gpu_.upload("stereo view", std::vector{view_}),
+           counters_ = gpu_.upload("stereo counters", std::vector{movingAll()});
+    Buffer colours_, boxes_;
+    Buffer classes_ = makeArray(std::size_t{view_.size_tiles.x} * view_.size_px.y, kUnwritten),
+           shown_mask_ = makeArray(WarpBuffers::maskWords(view_.size_px), ~0u);
+    // If rows have a buffer of their own.
+    Buffer own_words_ = isShared(rows_) ? Buffer() : makeArray(2 * pixelCount(), 0);
     std::uint32_t box_capacity_;
 
 public:
     // Of the affiliated eye; bins are depths, or prices.
-    Buffer affiliated, depths, tile_kinds, tile_costs, tile_errors, tile_depths, tile_mask, bins;
+    Buffer affiliated = makeArray(wordsPerPixel() * pixelCount(), kUnwritten),
+           depths = makeArray(pixelCount(), kUnwritten), tile_kinds = makeArray(tileCount(), 0),
+           tile_costs = makeArray(tileCount(), kUnwritten), tile_errors = makeArray(tileCount(), 0),
+           tile_depths = makeArray(tileCount(), kUnwritten),
+           tile_mask = makeArray(WarpBuffers::maskWords(view_.size_px), 0),
+           bins = makeArray(gpu::kDepthBins, 0);
+    static_assert(gpu::kDepthBins == gpu::kPriceBins);
 };
 
 inline gpu::WarpView viewOfCase(const StereoCase& c) {

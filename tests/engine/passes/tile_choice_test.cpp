@@ -6,7 +6,6 @@ SUITE(tile_choice) {
 
 using reference::Borders;
 using reference::DepthChoice;
-using reference::InverseDepthBounds;
 using reference::PixelClass;
 using reference::Resolved;
 using reference::TileKind;
@@ -58,10 +57,9 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     device.findComponents();
     const std::size_t components = reference::markComponents(resolved, kinds, size_px, margin_px, boxes);
     const gpu::WarpCounters counters = device.readCounters();
-    CHECK(counters.components == components);
-    CHECK(device.read(device.tile_kinds) == kindsOf(kinds));
-    CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
-    CHECK(device.readClasses() == classes);
+    CHECK(these(counters.components, counters.center_tiles) ==
+          these(components, std::ranges::count(kinds, TileKind::kCenter)));
+    CHECK(these(device.read(device.tile_kinds), device.readClasses()) == these(kindsOf(kinds), classes));
     // Except for the holes, nothing has changed.
     auto after = device.read(device.affiliated);
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -75,11 +73,9 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
 
 TEST_CASE_FIXTURE(Gpu, "depth_bounds counts what is out of range as the last, and faint pixels not at all") {
     StereoCase c = makePlainCase({20, 10});
-    for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
-        c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5;
-    }
     const std::array<double, 5> inverse_depths{1.0, 1e-9, 1e9, 0.25, -1.0};
     for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
+        c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5;
         c.dominant.inverse_depth[i] = c.dominant.rgba[i].w * inverse_depths[i / 2 % 5];
     }
     StereoOnDevice device = toDevice(*this, c);
@@ -91,93 +87,72 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts what is out of range as the last, an
     CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
 }
 
-TEST_CASE("depth bounds leave out one pixel in 200 at either end, and widen to whole bins") {
-    std::vector<std::uint32_t> bins(gpu::kDepthBins, 0);
-    CHECK(reference::findInverseDepthBounds(bins).near == 0.0);
-    // 1000 pixels: the five nearest and the five farthest count as specks; depths 2^0 to 2^4.
-    bins[100] = 5;
-    bins[512] = 495;
-    bins[512 + 4 * 32 - 1] = 495;
-    bins[900] = 5;
-    const InverseDepthBounds bounds = reference::findInverseDepthBounds(bins);
-    CHECK(bounds.near == 1.0);
-    CHECK(bounds.far == 1.0 / 16.0);
-    bins[100] = 6;
-    CHECK(reference::findInverseDepthBounds(bins).near == std::exp2(16.0 - 100.0 / 32.0));
-}
-
 TEST_CASE("edge ROIs of parallel eyes, by hand") {
+    struct Roi {
+        Side dominant;
+        int margin_px;
+        bool tight_edges;
+        Borders borders;
+    };
     // At depths 1 and 4, pixels move to the left by 10 and by 2.5 px. The right edge's last pixel, 127 in the
     // paper's count, is at 117 and 124.5, so u_max = 124.5 and right_w = 127 - 124 + 32. Left, top and
-    // bottom: u_min = -10, v_min = 0, v_max = H - 1, so nothing.
-    StereoCase c = makePlainCase({128, 96});
-    const InverseDepthBounds bounds{0.25, 1.0};
-    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 35, 0});
-    // What near content uncovers: from 117 on.
-    c.settings.tight_edges = true;
-    c.settings.margin_px = 0;
-    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 10, 0});
-    // In the other direction u_min = 2.5 and at most 10: left_w = 3, or 10, plus the margin; never more than
-    // half of the width.
-    c = makePlainCase({128, 96}, kRight);
-    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{35, 0, 0, 0});
-    c.settings.margin_px = 62;
-    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{64, 0, 0, 0});
-    c.settings.margin_px = 0;
-    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{3, 0, 0, 0});
-    c.settings.tight_edges = true;
-    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{10, 0, 0, 0});
-    // 35 px are three tiles of eight. A border of one pixel is a column of tiles. At a width of 100 px, the
-    // last tile has four columns.
-    const auto columns = [](const Borders& borders, glm::uvec2 size_px) {
-        std::string row;
-        for (const TileKind kind : reference::markEdges(borders, size_px)) {
-            row += kind == TileKind::kEdge ? 'e' : '.';
-        }
-        return row;
-    };
-    CHECK(columns({35, 0, 1, 0}, {128, 16}) == "eee....e");
-    CHECK(columns({16, 0, 4, 0}, {100, 16}) == "e.....e");
-    CHECK(columns({17, 0, 5, 0}, {100, 16}) == "ee...ee");
-    CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
+    // bottom: u_min = -10, v_min = 0, v_max = H - 1, so nothing. Tight: what near content uncovers, from 117
+    // on. In the other direction u_min = 2.5 and at most 10: left_w = 3, or 10, plus the margin; never more
+    // than half of the width.
+    for (const Roi& roi : {Roi{kLeft, 32, false, {0, 0, 35, 0}}, Roi{kLeft, 0, true, {0, 0, 10, 0}},
+                           Roi{kRight, 32, false, {35, 0, 0, 0}}, Roi{kRight, 62, false, {64, 0, 0, 0}},
+                           Roi{kRight, 0, false, {3, 0, 0, 0}}, Roi{kRight, 0, true, {10, 0, 0, 0}}}) {
+        StereoCase c = makePlainCase({128, 96}, roi.dominant);
+        c.settings.margin_px = roi.margin_px;
+        c.settings.tight_edges = roi.tight_edges;
+        CHECK(reference::findBorders({0.25, 1.0}, c.eyes, c.settings) == roi.borders);
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and edge_rois finds its borders and tiles") {
     std::uint32_t all_flips = 0;
     for (StereoCase c : makeStereoCases()) {
-        std::vector<gpu::uint> bins;
+        // What is seen; nothing; 1000 pixels, of which the five nearest and the five farthest are specks; the
+        // same with six near ones, which are none.
+        std::vector<std::vector<gpu::uint>> bins(4, std::vector<gpu::uint>(gpu::kDepthBins, 0));
+        for (const std::size_t i : {2, 3}) {
+            bins[i][100] = i == 2 ? 5 : 6;
+            bins[i][512] = bins[i][512 + 4 * 32 - 1] = 495;
+            bins[i][900] = 5;
+        }
         for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
             if (areHalves(rows)) { roundToHalves(c.dominant); }
             INFO(c.name, ", rows ", static_cast<int>(rows));
             StereoOnDevice device = toDevice(*this, c, rows);
             device.boundDepths();
-            bins = device.read(device.bins);
+            bins[0] = device.read(device.bins);
             const auto expected = reference::boundDepths(c.dominant, c.settings.depth_choice);
             std::uint32_t flips = 0;
-            for (std::size_t b = 0; b < bins.size(); ++b) {
-                flips += std::max(bins[b], expected[b]) - std::min(bins[b], expected[b]);
+            for (std::size_t b = 0; b < expected.size(); ++b) {
+                flips += std::max(bins[0][b], expected[b]) - std::min(bins[0][b], expected[b]);
             }
-            CHECK(std::accumulate(bins.begin(), bins.end(), 0u) ==
+            CHECK(std::accumulate(bins[0].begin(), bins[0].end(), 0u) ==
                   std::accumulate(expected.begin(), expected.end(), 0u));
             CHECK(flips <= 2);
             all_flips += flips;
         }
-        for (unsigned way = 0; way < 12; ++way) {
+        for (unsigned way = 0; way < 18; ++way) {
+            const std::vector<gpu::uint>& counted = bins[way < 12 ? 0 : 1 + way % 3];
             c.settings.margin_px = way % 2 == 0 ? 0 : 32;
             c.settings.tight_edges = way / 2 % 2 != 0;
-            c.settings.edge_samples = std::array{1, 64, 300}[way / 4];
+            c.settings.edge_samples = std::array{1, 64, 300}[way / 4 % 3];
             INFO(c.name, ", way ", way);
             StereoOnDevice device = toDevice(*this, c);
-            device.write(device.bins, bins);
+            device.write(device.bins, counted);
             device.findEdgeRois();
             const Borders expected =
-                reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+                reference::findBorders(reference::findInverseDepthBounds(counted), c.eyes, c.settings);
             const auto kinds = kindsOf(reference::markEdges(expected, c.sizePx()));
             const gpu::WarpCounters counters = device.readCounters();
             CHECK(counters.borders_px ==
                   glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
             CHECK(device.read(device.tile_kinds) == kinds);
-            CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));
+            CHECK(counters.edge_tiles == std::ranges::count(kinds, gpu::kTileEdge));
         }
     }
     CHECK(all_flips <= 4);  // measured: none

@@ -41,29 +41,24 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     const auto costs = device.read(device.tile_costs), kinds = device.read(device.tile_kinds);
     const gpu::WarpCounters counters = device.readCounters();
     const auto depths = device.read(device.tile_depths), expected_depths = depthsOfTiles(c);
-    std::size_t other = 0, wrong_kinds = 0, wrong_depths = 0;
+    std::size_t other = 0;
     std::uint64_t picture_cost = 0, saved_cost = 0, moved = 0;
     for (std::size_t t = 0; t < costs.size(); ++t) {
         const bool hidden = expected.kinds[t] == TileKind::kHidden;
         const bool same = hidden || costs[t] == expected.costs[t];
         other += !same;
-        wrong_depths += !hidden && depths[t] != expected_depths[t];
+        if (!hidden) { REQUIRE(depths[t] == expected_depths[t]); }
         // Where nothing is worth moving, select says so of each tile.
-        const auto expected_kind = static_cast<gpu::uint>(expected.kinds[t]);
-        wrong_kinds += same && kinds[t] != expected_kind &&
-                       !(!expected.moves && kinds[t] == 0 && expected_kind == gpu::kTileCheap);
+        const bool is_left = !expected.moves && kinds[t] == 0 && expected.kinds[t] == TileKind::kCheap;
+        if (same && !is_left) { REQUIRE(kinds[t] == static_cast<gpu::uint>(expected.kinds[t])); }
         picture_cost += hidden ? 0 : costs[t];
         moved += kinds[t] == 0;
         if (kinds[t] == 0) { saved_cost += costs[t] - gpu::kTilePairs - c.settings.move_cost; }
     }
-    CHECK(wrong_kinds == 0);
-    CHECK(wrong_depths == 0);
-    CHECK(counters.picture_cost == picture_cost);
-    CHECK(counters.saved_cost == saved_cost);
+    CHECK(these(counters.picture_cost, counters.saved_cost) == these(picture_cost, saved_cost));
     if (other == 0) {
-        CHECK(counters.picture_cost == expected.picture_cost);
-        CHECK(counters.saved_cost == expected.saved_cost);
-        CHECK((counters.moves == 1) == expected.moves);
+        CHECK(these(counters.picture_cost, counters.saved_cost, (counters.moves == 1)) ==
+              these(expected.picture_cost, expected.saved_cost, expected.moves));
     }
     // The passes that move pixels are as large as the picture, or empty.
     const bool moves = counters.moves != 0;
@@ -146,20 +141,20 @@ TEST_CASE_FIXTURE(Gpu,
         std::vector<std::uint32_t> pairs;
         double budget;
         std::vector<std::uint8_t> hidden;
-        std::string kinds;
-        gpu::uint picture_cost, saved_cost;
+        bool moves;
     };
     const std::vector<std::uint8_t> none, fourth{0, 0, 0, 1, 0, 0, 0, 0};
     for (const Strip& strip :
-         {Strip{{200, 1, 1, 1, 1, 1, 1, 1}, 0.0, none, "CCCCCCCC", 335, 160},
-          Strip{{201, 1, 1, 1, 1, 1, 1, 1}, 0.0, none, ".CCCCCCC", 336, 161},
-          Strip{{181, 1, 1, 1, 1, 1, 1, 1}, 0.0, fourth, ".CChCCCC", 299, 141},
+         {Strip{{200, 1, 1, 1, 1, 1, 1, 1}, 0.0, none, false},
+          Strip{{201, 1, 1, 1, 1, 1, 1, 1}, 0.0, none, true},
+          Strip{{180, 1, 1, 1, 1, 1, 1, 1}, 0.0, fourth, false},
+          Strip{{181, 1, 1, 1, 1, 1, 1, 1}, 0.0, fourth, true},
           // Hidden tiles count for nothing.
-          Strip{{181, 1, 1, 9999, 1, 1, 1, 1}, 0.0, fourth, ".CChCCCC", 299, 141},
-          Strip{{500, 500, 0, 0, 0, 0, 0, 0}, 0.0, {1, 1, 1, 1, 1, 1, 1, 1}, "hhhhhhhh", 0, 0},
+          Strip{{180, 1, 1, 9999, 1, 1, 1, 1}, 0.0, fourth, false},
+          Strip{{500, 500, 0, 0, 0, 0, 0, 0}, 0.0, {1, 1, 1, 1, 1, 1, 1, 1}, false},
           // 477 in all, of which 309 are saved: more than 160 and 143 for mending, but not than 160 and 190.
-          Strip{{349, 0, 0, 0, 0, 0, 0, 0}, 0.3, none, ".CCCCCCC", 477, 309},
-          Strip{{349, 0, 0, 0, 0, 0, 0, 0}, 0.4, none, "CCCCCCCC", 477, 309}}) {
+          Strip{{349, 0, 0, 0, 0, 0, 0, 0}, 0.3, none, true},
+          Strip{{349, 0, 0, 0, 0, 0, 0, 0}, 0.4, none, false}}) {
         INFO(strip.pairs[0], " pairs, budget ", strip.budget);
         StereoCase c = makeStill({128, 16});
         c.settings.move_cost = 40;
@@ -167,12 +162,7 @@ TEST_CASE_FIXTURE(Gpu,
         c.settings.target_hidden = strip.hidden;
         const auto ranges = rangesOf(strip.pairs);
         CHECK(checkWeighing(*this, c, ranges, Rows::kOwn) == 0);
-        const reference::Weighed weighed = reference::weigh(c.dominant, ranges, c.eyes, c.settings);
-        std::string kinds;
-        for (const TileKind kind : weighed.kinds) { kinds += ".ecphC"[static_cast<std::size_t>(kind)]; }
-        CHECK(these(kinds, weighed.picture_cost, weighed.saved_cost) ==
-              these(strip.kinds, strip.picture_cost, strip.saved_cost));
-        CHECK(weighed.moves == strip.kinds.starts_with('.'));
+        CHECK(reference::weigh(c.dominant, ranges, c.eyes, c.settings).moves == strip.moves);
     }
 }
 
