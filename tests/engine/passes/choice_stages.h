@@ -60,13 +60,13 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
             gpu.upload("mask", std::vector<gpu::uint>(std::size_t{(eye.size.x + 31) / 32} * eye.size.y, 0)),
             gpu.upload("history", eye.history)});
         gpu::TargetState& target = targets.emplace_back();
-        target.tile_kinds = of.kinds.address<gpu::uint>();
-        target.tile_costs = of.costs.address<gpu::uint>();
-        target.tile_errors = of.errors.address<gpu::uint>();
-        target.tile_prices = of.prices.address<gpu::uint>();
-        target.tile_list = of.list.address<gpu::uint>();
-        target.tile_mask = of.mask.address<gpu::uint>();
-        target.history_tiles = of.history.address<gpu::HistoryTile>();
+        target.tile_kinds = at(of.kinds);
+        target.tile_costs = at(of.costs);
+        target.tile_errors = at(of.errors);
+        target.tile_prices = at(of.prices);
+        target.tile_list = at(of.list);
+        target.tile_mask = at(of.mask);
+        target.history_tiles = at(of.history);
         target.area = 1.0f;
         target.warp.size_px = how.gaze ? how.seen.size_px : 16u * eye.size;
         target.warp.size_tiles = eye.size;
@@ -87,12 +87,10 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         const auto groups = static_cast<std::uint32_t>((most_tiles + gpu::kWarpGroup - 1) / gpu::kWarpGroup),
                    count = static_cast<std::uint32_t>(eyes.size());
         if (how.predicted) {
-            commands.dispatch(price,
-                              gpu::PricePass{first, first_list, bins.address<gpu::uint>(), how.most_cost},
-                              groups, 1, count);
+            commands.dispatch(price, gpu::PricePass{first, first_list, at(bins), how.most_cost}, groups, 1,
+                              count);
         }
-        commands.dispatch(select, gpu::SelectPass{first, first_list, visible.address<gpu::ListState>(), 1},
-                          groups, 1, count);
+        commands.dispatch(select, gpu::SelectPass{first, first_list, at(visible), 1}, groups, 1, count);
     });
     targets = gpu.readBack<gpu::TargetState>(states, eyes.size());
     std::vector<Chosen> chosen;
