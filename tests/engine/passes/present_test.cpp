@@ -29,40 +29,37 @@ struct Presented {
 };
 
 Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation& how = {}) {
-    const Buffer colours = shown.halves ? gpu.upload("colours", packHalves(shown.colours))
-                                        : gpu.upload("colours", shown.colours),
-                 sums = gpu.upload("depth sums", shown.depth_sums), words = gpu.upload("words", shown.words),
-                 kinds = gpu.upload("kinds", shown.tile_kinds),
-                 classes = gpu.upload("classes", shown.pixel_classes);
+    const auto upload = [&](const auto& values) {
+        return values.empty() ? Buffer() : gpu.upload("input", values);
+    };
+    const Buffer colours = shown.halves ? upload(packHalves(shown.colours)) : upload(shown.colours),
+                 sums = upload(shown.depth_sums), words = upload(shown.words),
+                 kinds = upload(shown.tile_kinds), classes = upload(shown.pixel_classes), none = Buffer();
     const std::size_t count = shown.colours.size();
-    const Buffer pixels = shown.behind.empty() ? gpu.allocate<std::uint32_t>("pixels", count)
-                                               : gpu.upload("pixels", shown.behind),
-                 depths = shown.mesh_depths.empty() ? gpu.allocate<float>("depths", count)
-                                                    : gpu.upload("depths", shown.mesh_depths);
-    const bool with_depth = !shown.words.empty() || !shown.depth_sums.empty();
-    gpu::PresentPass pass{};
-    pass.colours = colours.address<gpu::vec4>();
-    pass.half_colours = colours.address<gpu::uvec2>();
-    pass.depths = sums.address<float>();
-    if (!shown.words.empty()) { pass.words = words.address<gpu::uint>(); }
-    if (!shown.tile_kinds.empty()) { pass.tile_kinds = kinds.address<gpu::uint>(); }
-    if (!shown.pixel_classes.empty()) { pass.pixel_classes = classes.address<gpu::uint>(); }
-    pass.pixels = pixels.address<gpu::uint>();
-    if (with_depth) { pass.device_depths = depths.address<float>(); }
-    pass.size_px = shown.size_px;
-    pass.depth_scale = static_cast<float>(how.near);
-    pass.depth_offset = static_cast<float>(how.depth_offset);
-    pass.over = shown.behind.empty() || shown.kept_bits != 0 ? 0 : 1;
-    if (!shown.mesh_depths.empty()) { pass.mesh_depths = depths.address<float>(); }
-    pass.is_cut = how.is_cut ? 1 : 0;
-    pass.blue_first = how.blue_first ? 1 : 0;
-    pass.linear = how.linear ? 1 : 0;
-    pass.see_through = how.see_through ? 1 : 0;
-    pass.kept_bits = shown.kept_bits;
-    const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = shown.halves});
-    gpu.run([&](Commands& commands) {
-        commands.dispatch(kernel, pass, (shown.size_px.x + 15) / 16, (shown.size_px.y + 7) / 8);
-    });
+    const bool is_alone = shown.behind.empty(), has_meshes = !shown.mesh_depths.empty(),
+               with_depth = !shown.words.empty() || !shown.depth_sums.empty();
+    const Buffer pixels = is_alone ? gpu.allocate<std::uint32_t>("pixels", count) : upload(shown.behind),
+                 depths = has_meshes ? upload(shown.mesh_depths) : gpu.allocate<float>("depths", count);
+    const gpu::PresentPass pass{.colours = at(colours),
+                                .half_colours = at(colours),
+                                .depths = at(sums),
+                                .words = at(words),
+                                .tile_kinds = at(kinds),
+                                .pixel_classes = at(classes),
+                                .pixels = at(pixels),
+                                .device_depths = at(with_depth ? depths : none),
+                                .mesh_depths = at(has_meshes ? depths : none),
+                                .size_px = shown.size_px,
+                                .depth_scale = static_cast<float>(how.near),
+                                .depth_offset = static_cast<float>(how.depth_offset),
+                                .blue_first = how.blue_first,
+                                .linear = how.linear,
+                                .see_through = how.see_through,
+                                .over = !is_alone && shown.kept_bits == 0,
+                                .is_cut = how.is_cut,
+                                .kept_bits = shown.kept_bits};
+    gpu.dispatch(gpu.kernel(PresentKernel{.half_colours = shown.halves}), pass,
+                 (shown.size_px + glm::uvec2(15, 7)) / glm::uvec2(16, 8));
     return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
 }
 
@@ -119,7 +116,7 @@ TEST_CASE_FIXTURE(Gpu, "of a picture over another's words only the bits that are
     const Bytes actual = runPresent(*this, shown).pixels;
     CHECK(countOff(actual, expected, 1) == 0);
     for (std::size_t i = 0; i < actual.size(); ++i) {
-        CHECK(((actual[i] ^ shown.behind[i]) & shown.kept_bits) == 0);
+        CHECK((actual[i] & shown.kept_bits) == (shown.behind[i] & shown.kept_bits));
     }
 }
 
@@ -192,8 +189,6 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, of sums and of words, and noth
         const std::vector<double> expected =
             reference::presentDepths(asDoubles(shown->colours), sums, shown->size_px.x, how);
         if (shown == &summed) { CHECK(expected == std::vector<double>{0.0625, 1.0, 1.0, 0.0, 0.0, 0.0}); }
-        CHECK(expected[0] == 0.0625);
-        CHECK(expected[2] == 1.0);
         const Presented presented = runPresent(*this, *shown, how);
         for (std::size_t i = 0; i < sums.size(); ++i) {
             CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6));
@@ -201,55 +196,40 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, of sums and of words, and noth
     }
 }
 
-// A pane in front of a slanted wall. Its edge, which is not straight, takes `soft_px` from opaque to nothing.
-struct Silhouette {
-    static constexpr glm::uvec2 kSizePx{48, 40};
-    explicit Silhouette(double soft_px, bool by_words) {
-        for (std::uint32_t i = 0; i < kSizePx.x * kSizePx.y; ++i) {
+TEST_CASE_FIXTURE(Gpu, "the depth at a silhouette is of the surface that makes up half of the pixel") {
+    // A pane in front of a slanted wall. Its edge, which is not straight, takes `soft_px` from opaque to
+    // nothing.
+    constexpr glm::uvec2 kSizePx(48, 40);
+    for (int way = 0; way < 10; ++way) {
+        const bool by_words = way % 2 != 0;
+        const double soft_px = std::array{0.0, 1.0, 2.5, 4.0, 8.0}[way / 2];
+        CAPTURE(by_words);
+        CAPTURE(soft_px);
+        reference::Presentation how{false, false, 0.25};
+        how.by_inverse = by_words;
+        Shown shown{.size_px = kSizePx, .colours = Colours(kSizePx.x * kSizePx.y, {0, 0, 0, 1})};
+        std::vector<double> back, shares, sums;
+        for (std::size_t i = 0; i < shown.colours.size(); ++i) {
             const glm::dvec2 at(i % kSizePx.x, i / kSizePx.x);
             const double beyond_px = at.x - 20.3 - 0.3 * at.y - 2.0 * std::sin(0.3 * at.y);
-            front.push_back(1.0 / 2.0);
             back.push_back(1.0 / 7.0 + 0.0004 * at.x - 0.0003 * at.y);
-            share.push_back(std::clamp(0.5 - beyond_px / std::max(soft_px, 1e-9), 0.0, 1.0));
-            const double mean_inverse = glm::mix(back[i], front[i], share[i]),
-                         mean = glm::mix(1.0 / back[i], 1.0 / front[i], share[i]);
-            shown.colours.emplace_back(0.0f, 0.0f, 0.0f, 1.0f);
+            shares.push_back(std::clamp(0.5 - beyond_px / std::max(soft_px, 1e-9), 0.0, 1.0));
             if (by_words) {
-                shown.words.push_back(packMoving(mean_inverse, true, 0));
+                shown.words.push_back(packMoving(glm::mix(back[i], 0.5, shares[i]), true, 0));
                 sums.push_back(1.0 / unpackArrival(shown.words[i]).inverse_depth);
             } else {
-                shown.depth_sums.push_back(static_cast<float>(mean));
+                shown.depth_sums.push_back(static_cast<float>(glm::mix(1.0 / back[i], 2.0, shares[i])));
                 sums.push_back(static_cast<double>(shown.depth_sums[i]));
             }
         }
-    }
-
-    std::vector<double> front, back, share, sums;
-    Shown shown{.size_px = kSizePx, .colours = {}};
-};
-
-TEST_CASE_FIXTURE(Gpu, "the depth at a silhouette is of the surface that makes up half of the pixel") {
-    for (const bool by_words : {false, true}) {
-        for (const double soft_px : {0.0, 1.0, 2.5, 4.0, 8.0}) {
-            CAPTURE(by_words);
-            CAPTURE(soft_px);
-            const Silhouette silhouette(soft_px, by_words);
-            reference::Presentation how{false, false, 0.25};
-            how.by_inverse = by_words;
-            const std::vector<double> expected = reference::presentDepths(
-                asDoubles(silhouette.shown.colours), silhouette.sums, Silhouette::kSizePx.x, how);
-            const Presented presented = runPresent(*this, silhouette.shown, how);
-            std::size_t mixed = 0;
-            for (std::size_t i = 0; i < expected.size(); ++i) {
-                CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-5));
-                const double mean = how.near / silhouette.sums[i], front = how.near * silhouette.front[i],
-                             back = how.near * silhouette.back[i];
-                mixed += mean < 0.95 * front && mean > 1.05 * back;
-                const double share = silhouette.share[i];
-                if (std::abs(share - 0.5) < 0.03) { continue; }  // half of either, or so: the wall is slanted
-                CHECK(expected[i] == doctest::Approx(share > 0.5 ? front : back).epsilon(0.03));
-            }
-            CHECK((mixed > 0) == (soft_px > 0.0));
+        const std::vector<double> expected =
+            reference::presentDepths(asDoubles(shown.colours), sums, kSizePx.x, how);
+        const Presented presented = runPresent(*this, shown, how);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-5));
+            if (std::abs(shares[i] - 0.5) < 0.03) { continue; }  // half of either, or so: the wall is slanted
+            const double surface = shares[i] > 0.5 ? 0.5 : back[i];
+            CHECK(expected[i] == doctest::Approx(how.near * surface).epsilon(0.03));
         }
     }
 }
