@@ -2,7 +2,6 @@
 #include "engine/levels/merge.h"
 
 #include "engine/builtin/procedural.h"
-#include "engine/scene/pick_splats.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
 SUITE(merge) {
@@ -37,8 +36,7 @@ TEST_CASE("of three discs in a row the two that look alike become one that cover
     merger.reduceTo(2);
     const Scene& scene = merger.scene();
     REQUIRE(scene.size() == 2);
-    CHECK(scene.positions[0] == row.positions[0]);
-    CHECK(scene.sh[0] == row.sh[0]);
+    CHECK(these(scene.positions[0], scene.sh[0]) == these(row.positions[0], row.sh[0]));
     // Weights decide about the mean.
     CHECK(scene.positions[1].x == doctest::Approx(0.35));
     CHECK(scene.sh[3] * kBand == doctest::Approx(0.575));
@@ -57,15 +55,14 @@ TEST_CASE("what shows little is merged first, and what lies at the same place be
     SplatMerger merger(scene, std::vector<std::int64_t>{1000, 1000, 1, 1});
     merger.reduceTo(3);
     CHECK(merger.scene().positions[2].x == doctest::Approx(5.05));
-    for (glm::vec3& position : scene.positions) { position = glm::vec3(1.0f); }
-    for (float& opacity : scene.opacities) { opacity = 0.5f; }
+    scene.positions.assign(4, glm::vec3(1.0f));
+    scene.opacities.assign(4, 0.5f);
     SplatMerger same_place(scene, std::vector<std::int64_t>(4, 1));
     same_place.reduceTo(1);
     REQUIRE(same_place.scene().size() == 1);
     CHECK(same_place.scene().scales[0].x == doctest::Approx(0.1));
     CHECK(same_place.scene().opacities[0] >= 0.5f);
-
-    for (float& opacity : scene.opacities) { opacity = 0.001f; }
+    scene.opacities.assign(4, 0.001f);
     SplatMerger faint(scene, std::vector<std::int64_t>(4, 1));
     faint.reduceTo(1);
     CHECK(faint.scene().opacities[0] == kFaintest);
