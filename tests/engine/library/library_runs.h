@@ -1,6 +1,8 @@
 // The library as a program uses it: a device with a renderer, scenes, and calls that are refused.
 #pragma once
 
+#include "engine/builtin/procedural.h"
+#include "engine/files/ply.h"
 #include "tests/run_program.h"
 
 #include <binosplat.hpp>
@@ -15,6 +17,12 @@ inline bsp::Scene loaded(const bsp::Device& device, const std::string& source, s
     bsp::Scene scene(device, info);
     scene.wait();
     return scene;
+}
+// From a file that it does not need any more.
+inline bsp::Scene loaded(const bsp::Device& device, const Scene& scene) {
+    const Workplace place;
+    writePly(scene, (place.path / "scene.ply").string());
+    return loaded(device, (place.path / "scene.ply").string());
 }
 
 // For facts that use one, with a folder: TEST_CASE_FIXTURE(Opened, "...").
@@ -38,6 +46,7 @@ struct Opened : Workplace {
     [[nodiscard]] bsp::Scene load(const std::string& source, std::uint32_t live = 0) const {
         return loaded(*device, source, live);
     }
+    [[nodiscard]] bsp::Scene load(const Scene& scene) const { return loaded(*device, scene); }
 
     std::vector<std::string> lines;  // of the log
     std::string unwanted;            // lines with this fail the test: all, if it is empty

@@ -1,6 +1,4 @@
 // Facts about libbinosplat as other programs see it: what it exports, its pictures, and its errors.
-#include "engine/builtin/procedural.h"
-#include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
 #include "tests/engine/library/earlier_program.h"
 #include "tests/engine/library/library_runs.h"
@@ -9,35 +7,30 @@
 SUITE(library) {
 
 TEST_CASE_FIXTURE(AtWork, "it exports bsp_* and nothing else, under a name of its own version") {
-    const std::string library = BINOSPLAT_LIBRARY_FILE;
-    std::istringstream symbols(work.runCommand("nm -D --defined-only '" + library + "'").output);
+    std::istringstream symbols(work.runCommand("nm -D --defined-only '" BINOSPLAT_LIBRARY_FILE "'").output);
     int count = 0;
     for (std::string address, kind, name; symbols >> address >> kind >> name; ++count) {
         CHECK_MESSAGE(name.starts_with("bsp_"), name);
     }
     CHECK(count >= 18);
-    CHECK(contains(work.runCommand("readelf -d '" + library + "'").output, "[libbinosplat.so.0]"));
+    const std::string header = work.runCommand("readelf -d '" BINOSPLAT_LIBRARY_FILE "'").output;
+    CHECK(contains(header, "[libbinosplat.so.0]"));
 }
 
-TEST_CASE_FIXTURE(Opened,
-                  "its pictures are render's to the last bit, and its depths those of what a pixel shows") {
+TEST_CASE_FIXTURE(Opened, "its pictures are render's to the last bit, its depths those of what pixels show") {
     const bsp::Scene scene = load("builtin:fence");
     const double eye[]{0.1, -0.2, -1.0}, look[]{0.0, 0.0, 2.0}, up[]{0.0, -1.0, 0.0};
     const bsp::Views views = bsp::lookAt(eye, look, up, 0.063, 1.2, 96, 64);
-    for (const auto& [mode, name] :
-         {std::pair(BSP_MODE_SHARED, "shared"), std::pair(BSP_MODE_PREDICTED, "predicted")}) {
-        go(
-            fmt::format("render builtin:fence --eye 0.1,-0.2,-1 --look 0,0,2 --up 0,-1,0 --fov-x "
-                        "68.7549354156988 --size 96x64 --ipd 0.063 "
-                        "--mode {0} --out {0}",
-                        name));
+    for (const std::string name : {"shared", "predicted"}) {
+        go("render builtin:fence --eye 0.1,-0.2,-1 --look 0,0,2 --up 0,-1,0 --fov-x 68.7549354156988 "
+           "--size 96x64 --ipd 0.063 --mode " +
+           name + " --out " + name);
         bsp_frame_info frame = bsp::frame();
-        frame.mode = mode;
+        frame.mode = name == "shared" ? BSP_MODE_SHARED : BSP_MODE_PREDICTED;
         frame.flags = BSP_FRAME_DEPTH;
-        const bsp_frame_result result = renderer->render(scene, views, frame);
-        CHECK(result.splats_visible > 0);
-        const auto file = [&](const char* stem) {
-            return readPicture(path / name / (std::string(stem) + BINOSPLAT_FLOAT_EXTENSION));
+        CHECK(renderer->render(scene, views, frame).splats_visible > 0);
+        const auto file = [&](const std::string& stem) {
+            return readPicture(path / name / (stem + BINOSPLAT_FLOAT_EXTENSION));
         };
         const bsp::Picture left = renderer->colour(views[0], 0), depth = renderer->depth(views[0], 0);
         CHECK(left.values == file("left").values);
@@ -81,12 +74,9 @@ TEST_CASE_FIXTURE(Opened, "twenty threads load, show, cancel and destroy scenes 
     CHECK(shown + cancelled == 60);
 }
 
-TEST_CASE_FIXTURE(Opened,
-                  "three views are a pair and one alone, and arrays with gaps between them make the scene "
-                  "that their file makes") {
+TEST_CASE_FIXTURE(Opened, "three views are a pair and one, and arrays with gaps make their file's scene") {
     const Scene made = makeBuiltin("builtin:atelier", 3000);
-    writePly(made, (path / "room.ply").string());
-    const bsp::Scene of_file = load((path / "room.ply").string());
+    const bsp::Scene of_file = load(made);
     struct Row {
         glm::vec3 position;
         std::array<float, 4> rotation;
@@ -138,44 +128,43 @@ TEST_CASE_FIXTURE(Opened,
     CHECK(std::ranges::max(seen[0]) > 0.5f);
 }
 
-TEST_CASE_FIXTURE(Opened,
-                  "a program compiled against an earlier header runs, and a later one does unless it asks "
-                  "for what is unknown") {
+TEST_CASE_FIXTURE(Opened, "programs of earlier and later headers run, unless they ask for what is unknown") {
     const bsp::Scene scene = load("builtin:one-splat");
-    float first = 0.0f, second = 1.0f;
-    CHECK(draw_as_compiled(renderer->get(), scene.get(), AN_EARLIER_ONE, &first) == BSP_SUCCESS);
-    CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE, &second) == BSP_SUCCESS);
-    CHECK(first == second);
+    float red = 0.0f;
+    const auto draw = [&](compiled_against header) {
+        return draw_as_compiled(renderer->get(), scene.get(), header, &red);
+    };
+    CHECK(draw(AN_EARLIER_ONE) == BSP_SUCCESS);
+    const float first = std::exchange(red, 1.0f);
     CHECK(first > 0.1f);
-    CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE_AND_USES_IT, &second) ==
-          BSP_ERROR_INPUT);
+    CHECK(draw(A_LATER_ONE) == BSP_SUCCESS);
+    CHECK(red == first);
+    CHECK(draw(A_LATER_ONE_AND_USES_IT) == BSP_ERROR_INPUT);
     CHECK(contains(bsp_error_text(), "a later one is needed"));
 }
 
-TEST_CASE_FIXTURE(Opened,
-                  "what is wrong is a code and a line, each thread has its own, and the next call works") {
-    checkRefusal([&] { (void)load("nothing.ply"); }, BSP_ERROR_INPUT, "nothing.ply");
+TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line of its own thread, and the next call works") {
+    const auto refused = [](const std::function<void()>& action, const std::string& part) {
+        checkRefusal(action, BSP_ERROR_INPUT, part);
+    };
+    refused([&] { (void)load("nothing.ply"); }, "nothing.ply");
     std::thread([] { CHECK(std::string(bsp_error_text()).empty()); }).join();
     bsp::Views views = load("builtin:fence").startViews(0.063, 1.2, 64, 48);
-    checkRefusal([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
+    refused([&] { (void)renderer->colour(views[0], 0); }, "nothing is rendered yet");
     {
         const bsp::Scene scene = load("builtin:fence");
         bsp_frame_info frame = bsp::frame();
-        checkRefusal([&] { renderer->render(frame); }, BSP_ERROR_INPUT, "there are 0 views");
+        refused([&] { renderer->render(frame); }, "there are 0 views");
         frame.budget = 2.0;
-        checkRefusal([&] { renderer->render(scene, views, frame); }, BSP_ERROR_INPUT, "budget is 2");
-        const bsp::Views square = scene.startViews(0.063, 1.2, 48, 48);
-        checkRefusal(
-            [&] {
-                renderer->render(scene, {views[0], square[0]});
-            },
-            BSP_ERROR_INPUT, "different sizes");
+        refused([&] { renderer->render(scene, views, frame); }, "budget is 2");
+        const bsp::Views unlike{views[0], scene.startViews(0.063, 1.2, 48, 48)[0]};
+        refused([&] { renderer->render(scene, unlike); }, "different sizes");
         renderer->render(scene, views);
-        checkRefusal([&] { (void)renderer->depth(views[0], 0); }, BSP_ERROR_INPUT, "BSP_FRAME_DEPTH");
+        refused([&] { (void)renderer->depth(views[0], 0); }, "BSP_FRAME_DEPTH");
         CHECK(renderer->colour(views[0], 0).values.at(3) >= 0.0f);
     }
     // The scene that was shown is gone, and its picture with it.
-    checkRefusal([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
+    refused([&] { (void)renderer->colour(views[0], 0); }, "nothing is rendered yet");
     bsp_frame_info empty = bsp::frame();
     empty.views = views.data();
     empty.view_count = 2;
@@ -189,9 +178,9 @@ TEST_CASE_FIXTURE(Opened,
     auto none = bsp::make<bsp_splats>(BSP_TYPE_SPLATS);
     none.count = 1;
     none.scale_count = 4;
-    checkRefusal([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "4 scales");
+    refused([&] { bsp::Scene(*device, none); }, "4 scales");
     none.scale_count = 3;
-    checkRefusal([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "positions of splats are null");
+    refused([&] { bsp::Scene(*device, none); }, "positions of splats are null");
 }
 
 // The output of a script in tests/, run with Debian's numpy; none if that is not installed, or cannot load a
@@ -216,37 +205,35 @@ void checkArrays(const Workplace& work, const fs::path& ply, int frames) {
         outputOf(work, "engine/library/arrays.py", fmt::format("'{}' {}", ply.string(), frames));
     CHECK(output.value_or("all right\n") == "all right\n");
 }
-
-TEST_CASE_FIXTURE(AtWork,
-                  "Python draws a file's arrays as the file, turned cameras as they are, and refuses other "
-                  "shapes and types") {
+void checkRoom(const Workplace& work, int frames) {
     writePly(makeBuiltin("builtin:atelier", 3000), (work.path / "room.ply").string());
-    checkArrays(work, work.path / "room.ply", 3);
+    checkArrays(work, work.path / "room.ply", frames);
 }
 
-TEST_CASE_FIXTURE(
-    AtWork, "evaluate.py finds no more between a photograph and the same camera's picture than bytes lose") {
+TEST_CASE_FIXTURE(AtWork, "Python draws arrays as their file, turned cameras, and refuses other shapes") {
+    checkRoom(work, 3);
+}
+
+TEST_CASE_FIXTURE(AtWork, "a thousand frames from Python take no more memory than twenty" * nightly()) {
+    checkRoom(work, 1000);
+}
+
+TEST_CASE_FIXTURE(AtWork, "playbot's arrays from Python are its file, to the bit" * needsSharedData()) {
+    if (const auto data = sharedData()) { checkArrays(work, *data / "playbot/playbot_lod3_2dgs_sh2.ply", 1); }
+}
+
+TEST_CASE_FIXTURE(AtWork, "evaluate.py finds between a photograph and its camera's picture what bytes lose") {
     work.go(
-        "render builtin:fence --mode mono --eye 0.1,-0.2,-1 --look 0.1,-0.2,2 --up 0,-1,0 --fov-x 90 --size "
-        "96x64 --out photos");
-    work.write(
-        "cameras.json",
-        R"([{"img_name": "mono.png", "width": 96, "height": 64, "fx": 48, "fy": 48, "position": [0.1, -0.2, -1],
-                                  "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
+        "render builtin:fence --mode mono --eye 0.1,-0.2,-1 --look 0.1,-0.2,2 --up 0,-1,0 --fov-x 90 "
+        "--size 96x64 --out photos");
+    work.write("cameras.json",
+               R"([{"img_name": "mono.png", "width": 96, "height": 64, "fx": 48, "fy": 48,
+                    "position": [0.1, -0.2, -1], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
     fs::remove(work.path / "photos" / ("mono" BINOSPLAT_FLOAT_EXTENSION));
     const auto output = outputOf(work, "../docs/examples/evaluate.py", "builtin:fence cameras.json photos");
     if (!output) { return; }
     REQUIRE(output->ends_with(" dB of 1 test cameras\n"));
     CHECK(std::atof(output->substr(output->find("mean ") + 5).c_str()) > 50.0);
-}
-
-TEST_CASE_FIXTURE(AtWork, "a thousand frames from Python take no more memory than twenty" * nightly()) {
-    writePly(makeBuiltin("builtin:atelier", 3000), (work.path / "room.ply").string());
-    checkArrays(work, work.path / "room.ply", 1000);
-}
-
-TEST_CASE_FIXTURE(AtWork, "playbot's arrays from Python are its file, to the bit" * needsSharedData()) {
-    if (const auto data = sharedData()) { checkArrays(work, *data / "playbot/playbot_lod3_2dgs_sh2.ply", 1); }
 }
 
 }  // SUITE(library)
