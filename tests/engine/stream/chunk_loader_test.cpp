@@ -1,5 +1,4 @@
-// Parts of streamed scenes, loaded alongside the frames: exactly what is requested, in that order, whatever
-// files and servers do.
+// Parts of streamed scenes, loaded beside the frames: what is requested, in that order, whatever files do.
 #include "engine/stream/chunk_loader.h"
 
 #include "engine/builtin/procedural.h"
@@ -25,8 +24,8 @@ std::string writtenSplit() {
     return folder;
 }
 
-std::unique_ptr<ChunkSource> open(const std::string& source) {
-    return std::make_unique<ChunkSource>(source, WebSettings());
+std::unique_ptr<ChunkSource> open(const std::string& source = writtenSplit(), const WebSettings& web = {}) {
+    return std::make_unique<ChunkSource>(source, web);
 }
 
 // One level of every leaf.
@@ -53,60 +52,54 @@ std::vector<LeafLevel> placesOf(const std::vector<LoadedPart>& parts) {
 }
 
 TEST_CASE("what is wished for comes whole, the coarsest level before any finer one") {
-    ChunkLoader loader(open(writtenSplit()), {});
+    ChunkLoader loader(open(), {});
     const ChunkSource& source = loader.source();
     loader.want(everyLeaf(source, 3), everyLeaf(source, 0));
     const std::vector<LoadedPart> parts = takeAll(loader);
     REQUIRE(parts.size() == 64);
     std::map<std::size_t, Scene> files;
+    std::uint64_t splats = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const LeafLevel at = parts[i].at;
+        const LodLeaf& leaf = source.leaves()[at.leaf];
         CHECK(at.level == (i < 32 ? 3 : 0));
-        const LodRange& range = source.leaves()[at.leaf].levels[at.level];
+        const LodRange& range = leaf.levels[at.level];
         if (!files.contains(range.file)) {
             files[range.file] = loadScene(writtenSplit() + "/" + source.meta().files[range.file]);
         }
-        const Scene& file = files[range.file];
         REQUIRE(parts[i].splats == range.splats.count);
         REQUIRE(parts[i].scene.size() == range.splats.count);
-        const auto begin = file.positions.begin() + static_cast<std::ptrdiff_t>(range.splats.first);
-        CHECK(std::equal(parts[i].scene.positions.begin(), parts[i].scene.positions.end(), begin));
-        const auto lies_outside = [&leaf = source.leaves()[at.leaf]](const glm::vec3& p) {
-            return glm::any(glm::lessThan(p, leaf.low - 0.01f)) ||
-                   glm::any(glm::greaterThan(p, leaf.high + 0.01f));
-        };
-        CHECK(std::ranges::none_of(parts[i].scene.positions, lies_outside));
+        splats += range.splats.count;
+        const std::span expected(&files[range.file].positions[range.splats.first], range.splats.count);
+        CHECK(std::ranges::equal(parts[i].scene.positions, expected));
+        CHECK(std::ranges::all_of(expected, [&](const glm::vec3& p) {
+            return glm::clamp(p, leaf.low - 0.01f, leaf.high + 0.01f) == p;
+        }));
         CHECK(parts[i].scene.isGaussian3d());
     }
     CHECK(loader.takeLines().empty());
     CHECK(files.size() > 4);
-    const std::optional<LoaderWork> work = loader.tryWork();
-    REQUIRE(work.has_value());
-    std::uint64_t splats = 0;
-    for (const LoadedPart& part : parts) { splats += part.splats; }
-    CHECK(work->splats == splats);
-    CHECK(work->seconds > 0.0);
+    const LoaderWork work = loader.tryWork().value();
+    CHECK(work.splats == splats);
+    CHECK(work.seconds > 0.0);
 }
 
 TEST_CASE("the same wishes give the same parts in the same order, on any number of threads") {
-    std::vector<std::vector<LeafLevel>> orders;
-    for (const int threads : {1, 3}) {
-        LoaderSettings settings;
-        settings.threads = threads;
-        settings.kept_files = static_cast<std::size_t>(threads) - 1;
-        ChunkLoader loader(open(writtenSplit()), settings);
+    const auto orderOn = [](int threads) {
+        const auto kept_files = static_cast<std::size_t>(threads) - 1;
+        ChunkLoader loader(open(), {.threads = threads, .kept_files = kept_files});
         loader.want(everyLeaf(loader.source(), 3), {{5, 1}, {31, 0}, {7, 1}, {6, 2}});
-        orders.push_back(placesOf(takeAll(loader)));
-    }
-    CHECK(these(orders[0], orders[0].size()) == these(orders[1], 36));
+        return placesOf(takeAll(loader));
+    };
+    const std::vector<LeafLevel> order = orderOn(1);
+    CHECK(order.size() == 36);
+    CHECK(orderOn(3) == order);
 }
 
 TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") {
-    LoaderSettings settings;
-    settings.waiting_splats = 1;  // no second batch before the first is taken
-    ChunkLoader loader(open(writtenSplit()), settings);
-    const ChunkSource& source = loader.source();
-    loader.want({}, everyLeaf(source, 0));
+    ChunkLoader loader(open(), {.waiting_splats = 1});  // no second batch before the first is taken
+    const std::vector<LeafLevel> all = everyLeaf(loader.source(), 0);
+    loader.want({}, all);
     REQUIRE(loader.waitForNews(kPatience));
     loader.want({}, {{31, 2}});
     const std::vector<LoadedPart> parts = takeAll(loader);
@@ -117,8 +110,7 @@ TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") 
     REQUIRE(loader.waitForNews(kPatience));
     loader.want({}, {{30, 2}, {29, 2}});
     CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{30, 2}, {29, 2}});
-    // Nor does leaving with open requests take time.
-    loader.want({}, everyLeaf(source, 0));
+    loader.want({}, all);  // nor does leaving with open requests take time
 }
 
 TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says so, and the others come") {
@@ -129,8 +121,7 @@ TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says s
         REQUIRE(loader.source().leaves().size() == 4);  // with the environment
         loader.want(coarsest, finer);
         CHECK(placesOf(takeAll(loader)) == come);
-        const std::vector<std::string> lines = loader.takeLines();
-        checkSays(lines, line);
+        checkSays(loader.takeLines(), line);
         CHECK(these(loader.takeLines().empty(), loader.brokenFiles().value(), loader.isDone()) ==
               these(true, std::vector<bool>{false, true, false, false}, true));
     };
@@ -146,8 +137,7 @@ TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says s
 }
 
 #ifdef BINOSPLAT_WEB_TESTS
-TEST_CASE_FIXTURE(
-    InFolder, "a server that goes away in the middle is waited for: one line, and the rest when it is back") {
+TEST_CASE_FIXTURE(InFolder, "a server that goes away is waited for: one line, and the rest when it is back") {
     const WebPages files = filesOf(writtenSplit());
     std::atomic<bool> is_down = false;
     const WebServer server([&](const WebRequest& request) {
@@ -157,12 +147,11 @@ TEST_CASE_FIXTURE(
     web.fetch.attempts = 1;
     LoaderSettings settings;
     settings.first_pause = settings.most_pause = std::chrono::milliseconds(1);
-    ChunkLoader loader(std::make_unique<ChunkSource>(server.at("/lod-meta.json"), web), settings);
-    const ChunkSource& source = loader.source();
-    loader.want(everyLeaf(source, 3), {});
+    ChunkLoader loader(open(server.at("/lod-meta.json"), web), settings);
+    loader.want(everyLeaf(loader.source(), 3), {});
     CHECK(takeAll(loader).size() == 32);
     is_down = true;
-    const std::vector<LeafLevel> finest = everyLeaf(source, 0);
+    const std::vector<LeafLevel> finest = everyLeaf(loader.source(), 0);
     loader.want({}, finest);
     std::vector<std::string> lines;
     while (lines.empty()) {

@@ -1,5 +1,4 @@
-// Which levels the leaves of a streamed scene should show: by size and place, within a budget, and without
-// flicker.
+// Which levels the leaves of a streamed scene should show: by size and place, in a budget, without flicker.
 #include "engine/stream/level_chooser.h"
 #include "tests/suite.h"
 
@@ -32,14 +31,20 @@ Eye eyeAt(const glm::dvec3& position, double yaw_rad = 0.0) {
     return {{turn, position}, {500.0, 500.0, 500.0, 500.0}, {1000, 1000}};
 }
 
+// Where most look along the rows of leaves from.
+const Eye kBefore = eyeAt({0.5, 0.5, -1.0});
+
 // A chooser that owns its leaves.
 struct Chooser {
     std::vector<LodLeaf> leaves;
     LevelChooser chooser{leaves};
 
     explicit Chooser(std::vector<LodLeaf> of) : leaves(std::move(of)) {}
-    const LevelChoices& choose(const Eye& eye, const ChoiceSettings& settings,
-                               const LevelsThere& there = {}) {
+    const LevelChoices& choose(const Eye& eye, std::uint64_t splats, const LevelsThere& there = {},
+                               std::uint64_t pages = ~std::uint64_t{0}) {
+        ChoiceSettings settings;
+        settings.splats = splats;
+        settings.pages = pages;
         return chooser.choose(std::span(&eye, 1), settings, there);
     }
     // The splats of the leaves for which this is false, and true.
@@ -54,15 +59,7 @@ struct Chooser {
     }
 };
 
-ChoiceSettings within(std::uint64_t splats) {
-    ChoiceSettings settings;
-    settings.splats = splats;
-    settings.pages = ~std::uint64_t{0};
-    return settings;
-}
-
-// How far apart in pixels splats lie between two levels of a leaf that is z metres from eyeAt({0.5, 0.5,
-// -1.0}).
+// How far apart in pixels splats lie between two levels of a leaf that is z metres behind the first.
 double apartPx(const LodLeaf& leaf, std::size_t z, std::uint32_t a, std::uint32_t b) {
     const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
     return size_px / std::pow(static_cast<double>(leaf.levels[a].splats.count) *
@@ -72,7 +69,7 @@ double apartPx(const LodLeaf& leaf, std::size_t z, std::uint32_t a, std::uint32_
 
 TEST_CASE("the coarsest level of every leaf comes first, the nearest in view before the others") {
     Chooser field(makeField(8));
-    const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, -1.0}), within(1 << 18));
+    const LevelChoices& choices = field.choose(kBefore, 1 << 18);
     REQUIRE(choices.coarsest.size() == field.leaves.size());
     std::set<std::uint32_t> seen;
     for (const LeafLevel& one : choices.coarsest) {
@@ -81,7 +78,7 @@ TEST_CASE("the coarsest level of every leaf comes first, the nearest in view bef
     }
     CHECK(seen.size() == field.leaves.size());
     CHECK(choices.coarsest.front().leaf == 4);  // straight ahead
-    CHECK(these(choices.finer.front().leaf, choices.finer.front().level) == these(4, 0));
+    CHECK(choices.finer.front() == LeafLevel{4, 0});
     for (const LeafLevel& one : choices.finer) { CHECK(choices.levels[one.leaf] == one.level); }
 }
 
@@ -92,26 +89,23 @@ TEST_CASE("the budget is kept and used, whatever it is") {
     for (const std::uint64_t budget : {coarsest, 2 * coarsest, 100'000ul, 300'000ul, 1'000'000ul}) {
         CAPTURE(budget);
         Chooser field(leaves);
-        const LevelChoices& choices = field.choose(eye, within(budget));
+        const LevelChoices& choices = field.choose(eye, budget);
         CHECK(choices.splats <= budget);
         CHECK(choices.splats == field.splatsWhere(choices, [](const LodLeaf&) { return true; })[1]);
         if (budget <= 300'000) { CHECK(choices.splats > 0.9 * static_cast<double>(budget)); }
         CHECK(choices.coarsest.size() == leaves.size());
     }
     Chooser field(leaves);
-    const LevelChoices& few = field.choose(eye, within(coarsest * 10 / 64));
-    CHECK(few.coarsest.size() == 10);
-    CHECK(std::ranges::count(few.levels, kNone) == 54);
-    CHECK(few.levels[4] == 3);
+    const LevelChoices& few = field.choose(eye, coarsest * 10 / 64);
+    CHECK(these(few.coarsest.size(), std::ranges::count(few.levels, kNone), few.levels[4]) ==
+          these(10, 54, 3));
     // Pages count in the same way: a level of one splat takes a whole page.
-    ChoiceSettings pages = within(1 << 24);
-    pages.pages = 70;
-    CHECK(field.choose(eye, pages).pages <= 70);
+    CHECK(field.choose(eye, 1 << 24, {}, 70).pages <= 70);
 }
 
 TEST_CASE("nearer leaves show more, and splats that would lie closer than half a pixel are not asked for") {
     Chooser field(makeField(64, 6));
-    const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, -1.0}), within(1 << 24));
+    const LevelChoices& choices = field.choose(kBefore, 1 << 24);
     std::uint32_t before = 0;
     for (std::size_t z = 0; z < 64; ++z) {
         const std::uint32_t level = choices.levels[z * 64 + 32];
@@ -127,14 +121,11 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
     CHECK(before > 0);
 }
 
-TEST_CASE(
-    "levels that are off by more than 36 dB are chosen only where their splats are twice as close as other "
-    "levels'") {
-    const Eye eye = eyeAt({0.5, 0.5, -1.0});
+TEST_CASE("levels that are off by more than 36 dB are chosen only where their splats are twice as close") {
     std::vector<LodLeaf> leaves = makeField(64, 6);
     const auto levelsOf = [&](const std::vector<float>& errors) {
         for (LodLeaf& leaf : leaves) { leaf.errors = errors; }
-        return Chooser(leaves).choose(eye, within(1 << 26)).levels;
+        return Chooser(leaves).choose(kBefore, 1 << 26).levels;
     };
     const std::vector<std::uint32_t> unknown = levelsOf({});
     // All are within 36 dB; or the second is, and no coarser one.
@@ -143,11 +134,9 @@ TEST_CASE(
     std::size_t finer = 0;
     for (std::size_t z = 0; z < 64; ++z) {
         const std::uint32_t level = one[z * 64 + 32], usual = unknown[z * 64 + 32];
-        CHECK(level <= usual);
-        CHECK(level >= std::min(usual, 1u));
+        CHECK(level == within(std::min(usual, 1u), usual));
         finer += level < usual;
-        if (level < 2) { continue; }
-        CHECK(apartPx(leaves[z * 64 + 32], z, level, level - 1) < 0.25);
+        if (level >= 2) { CHECK(apartPx(leaves[z * 64 + 32], z, level, level - 1) < 0.25); }
     }
     CHECK(finer > 0);
 }
@@ -156,7 +145,7 @@ TEST_CASE("what lies behind is the first to go and the last to come") {
     Chooser field(makeField(16));
     // Splats in front of and behind somebody in the middle who looks that way.
     const auto look = [&](double yaw_rad) {
-        const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, 8.5}, yaw_rad), within(300'000));
+        const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, 8.5}, yaw_rad), 300'000);
         return field.splatsWhere(choices, [](const LodLeaf& leaf) { return leaf.low.z < 8.0f; });
     };
     const auto ahead = look(0.0), turned = look(std::numbers::pi);
@@ -165,42 +154,34 @@ TEST_CASE("what lies behind is the first to go and the last to come") {
     CHECK(2 * turned[0] < ahead[0]);
 }
 
-TEST_CASE(
-    "where it was measured what levels are off by, splats go to where they mend most, whatever lies before "
-    "it") {
-    const Eye eye = eyeAt({0.5, 0.5, 2.0});
-    const auto budget = within(8 * 16384);
-    std::vector<LodLeaf> leaves = makeField(4);
-    // As if each level's error were twice that of the next finer one; leaves on the right have ten times the
-    // error.
-    for (LodLeaf& leaf : leaves) {
-        const float wrong = leaf.low.x < 0.0f ? 0.001f : 0.01f;
-        leaf.errors = {0.0f, wrong, 2.0f * wrong, 4.0f * wrong};
-    }
-    Chooser field(leaves);
-    const LevelChoices& choices = field.choose(eye, budget);
-    const auto splats = field.splatsWhere(choices, [](const LodLeaf& leaf) { return leaf.low.x >= 0.0f; });
-    CHECK(choices.splats <= budget.splats);
+TEST_CASE("where it was measured what levels are off by, splats go to where they mend most") {
+    const Eye inside = eyeAt({0.5, 0.5, 2.0});
+    constexpr std::uint64_t kBudget = 8 * 16384;
+    const auto isRight = [](const LodLeaf& leaf) { return leaf.low.x >= 0.0f; };
+    const auto withErrors = [&](const std::vector<float>& left, const std::vector<float>& right) {
+        std::vector<LodLeaf> leaves = makeField(4);
+        for (LodLeaf& leaf : leaves) { leaf.errors = isRight(leaf) ? right : left; }
+        return Chooser(leaves);
+    };
+    // As if each level's error were twice that of the next finer one, and ten times that on the right.
+    const std::vector<float> doubling{0.0f, 0.001f, 0.002f, 0.004f};
+    Chooser field = withErrors(doubling, {0.0f, 0.01f, 0.02f, 0.04f});
+    const LevelChoices& choices = field.choose(inside, kBudget);
+    const auto splats = field.splatsWhere(choices, isRight);
+    CHECK(choices.splats <= kBudget);
     CHECK(splats[1] > 2 * splats[0]);
     // If they are the same everywhere, errors do not affect how levels depend on distance.
-    for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.002f, 0.004f}; }
-    Chooser even(leaves);
-    const LevelChoices& by_place = even.choose(eyeAt({0.5, 0.5, -1.0}), budget);
-    for (std::size_t l = 4; l < leaves.size(); ++l) { CHECK(by_place.levels[l] >= by_place.levels[l - 4]); }
+    const auto by_place = withErrors(doubling, doubling).choose(kBefore, kBudget).levels;
+    for (std::size_t l = 4; l < by_place.size(); ++l) { CHECK(by_place[l] >= by_place[l - 4]); }
     // A level that improves nothing comes after all that do, and keeps none of them away.
-    for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.001f, 0.001f}; }
-    Chooser flat(leaves);
-    CHECK(std::ranges::all_of(flat.choose(eye, within(1 << 24)).levels,
-                              [](std::uint32_t level) { return level == 0; }));
+    const std::vector<float> flat{0.0f, 0.001f, 0.001f, 0.001f};
+    CHECK(withErrors(flat, flat).choose(inside, 1 << 24).levels == std::vector<std::uint32_t>(16, 0));
     // Nor does it keep a finer one away that mends more than elsewhere.
-    for (LodLeaf& leaf : leaves) {
-        leaf.errors = leaf.low.x < 0.0f ? std::vector{0.0f, 0.001f, 0.002f, 0.004f}
-                                        : std::vector{0.0f, 0.03f, 0.03f, 0.031f};
-    }
-    Chooser stepped(leaves);
-    const LevelChoices& mended = stepped.choose(eyeAt({0.5, 0.5, -1.0}), budget);
-    for (std::size_t l = 0; l < leaves.size(); ++l) {
-        if (leaves[l].low.x >= 0.0f && leaves[l].low.z < 3.0f) { CHECK(mended.levels[l] == 0); }
+    Chooser stepped = withErrors(doubling, {0.0f, 0.03f, 0.03f, 0.031f});
+    const LevelChoices& mended = stepped.choose(kBefore, kBudget);
+    for (std::size_t l = 0; l < 16; ++l) {
+        const LodLeaf& leaf = stepped.leaves[l];
+        if (isRight(leaf) && leaf.low.z < 3.0f) { CHECK(mended.levels[l] == 0); }
     }
 }
 
@@ -210,24 +191,23 @@ TEST_CASE("a head that trembles changes nothing") {
     for (const std::uint64_t budget : {60'000ul, 200'000ul, 10'000'000ul}) {
         Chooser field(makeField(16));
         const glm::dvec3 place(0.3, 0.5, 2.0);
-        const std::vector<std::uint32_t> at_rest = field.choose(eyeAt(place), within(budget)).levels;
-        CHECK(field.choose(eyeAt(place), within(budget)).levels == at_rest);
+        const std::vector<std::uint32_t> at_rest = field.choose(eyeAt(place), budget).levels;
+        CHECK(field.choose(eyeAt(place), budget).levels == at_rest);
         for (int i = 0; i < 200; ++i) {
-            const Eye eye =
-                eyeAt(place + glm::dvec3(tremor(random), tremor(random), tremor(random)), tremor(random));
-            CHECK(field.choose(eye, within(budget)).levels == at_rest);
+            const glm::dvec3 moved(tremor(random), tremor(random), tremor(random));
+            CHECK(field.choose(eyeAt(place + moved, tremor(random)), budget).levels == at_rest);
         }
     }
 }
 
 TEST_CASE("a slow walk changes the level of a leaf once each time it comes nearer") {
     Chooser field(makeField(24, 6));
-    std::vector<std::uint32_t> before = field.choose(eyeAt({0.5, 0.5, -30.0}), within(1 << 24)).levels;
+    const auto levelsAt = [&](double z) { return field.choose(eyeAt({0.5, 0.5, z}), 1 << 24).levels; };
+    std::vector<std::uint32_t> before = levelsAt(-30.0);
     const std::size_t leaves = before.size();
     std::size_t changes = 0, coarser = 0;
     for (int step = 0; step < 320; ++step) {
-        const std::vector<std::uint32_t> now =
-            field.choose(eyeAt({0.5, 0.5, -30.0 + 0.05 * step}), within(1 << 24)).levels;
+        const std::vector<std::uint32_t> now = levelsAt(-30.0 + 0.05 * step);
         for (std::size_t l = 0; l < leaves; ++l) {
             coarser += now[l] > before[l];
             changes += now[l] != before[l];
@@ -243,13 +223,13 @@ TEST_CASE("levels in broken files are passed over, unless they are loaded") {
     using Levels = std::vector<std::uint32_t>;
     Chooser field(makeField(2));
     const auto choose = [&](const LevelsThere& there) -> const LevelChoices& {
-        return field.choose(eyeAt({0.0, 0.5, -1.0}), within(1 << 20), there);
+        return field.choose(eyeAt({0.0, 0.5, -1.0}), 1 << 20, there);
     };
     CHECK(choose({}).levels == Levels(4, 0));
     CHECK(choose({{true, false, false, false}, {}}).levels == Levels(4, 1));
     CHECK(choose({{true, false, false, false}, {0, 1}}).levels == Levels{1, 0, 1, 1});
-    const LevelChoices& without_coarsest = choose({{false, false, false, true}, {}});
-    CHECK(these(without_coarsest.levels, without_coarsest.coarsest.front().level) == these(Levels(4, 0), 2));
+    CHECK(choose({{false, false, false, true}, {}}).levels == Levels(4, 0));
+    CHECK(choose({{false, false, false, true}, {}}).coarsest.front().level == 2);
     CHECK(choose({{true, true, true, true}, {}}).levels == Levels(4, kNone));
 }
 
@@ -259,10 +239,11 @@ TEST_CASE("leaves of odd shape, count and place are no trouble") {
                  // Coarser levels do not have fewer splats.
                  {glm::vec3(1), glm::vec3(2), {{0, 0, {1, 5}}, {1, 2, {0, 5}}, {2, 3, {0, 9}}}},
                  {glm::vec3(3e38f), glm::vec3(3e38f), {{0, 0, {6, 1ull << 40}}, {1, 2, {5, 1}}}}});
-    const LevelChoices& choices = odd.choose(eyeAt(glm::dvec3(0.0)), within(1000));
+    const Eye eye = eyeAt(glm::dvec3(0.0));
+    const LevelChoices& choices = odd.choose(eye, 1000);
     CHECK(these(choices.levels, choices.splats) == these(std::vector<std::uint32_t>{0, 0, 0, 1}, 107));
-    CHECK(odd.choose(eyeAt(glm::dvec3(0.0)), within(0)).levels == std::vector<std::uint32_t>(4, kNone));
-    CHECK(Chooser({}).choose(eyeAt(glm::dvec3(0.0)), within(1000)).levels.empty());
+    CHECK(odd.choose(eye, 0).levels == std::vector<std::uint32_t>(4, kNone));
+    CHECK(Chooser({}).choose(eye, 1000).levels.empty());
 }
 
 }  // SUITE(level_chooser)

@@ -23,8 +23,7 @@ int main(int argc, char** argv) {
         take(3, settings.leaf_splats, 1u << 24);
         take(4, settings.levels, 16);
         take(5, settings.chunk_splats, 1u << 24);
-        const std::string source = argv[1];
-        test::splitScene(loadScene(source), argv[2], settings);
+        test::splitScene(loadScene(std::string(argv[1])), argv[2], settings);
         return 0;
     } catch (const std::exception& error) {
         fmt::print(stderr, "split_scene: {}\n", error.what());
