@@ -1,5 +1,4 @@
-// Facts about pictures whose axes stay fixed while the head turns: what they cover and hide, when they move,
-// and how a compositor shows them.
+// Facts about pictures whose axes stay fixed while the head turns: what they cover, and when they move.
 #include "app/axes/staying_axes.h"
 #include "engine/picture/turned.h"
 #include "tests/engine/frame/frame_runs.h"
@@ -13,19 +12,23 @@ const double kMargin = glm::radians(kMarginDegrees);
 
 Eye eyeOf(glm::uvec2 size_px) { return {{}, intrinsicsFromAngles({-0.9, 0.7, 0.8, -0.6}, size_px), size_px}; }
 
-Eye turned(const Eye& eye, double degrees, const glm::dvec3& axis) {
-    Eye other = eye;
-    other.world_from_camera.orientation =
-        eye.world_from_camera.orientation * glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
-    return other;
+Eye turned(Eye eye, double degrees, const glm::dvec3& axis) {
+    glm::dquat& orientation = eye.world_from_camera.orientation;
+    orientation = orientation * glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
+    return eye;
+}
+
+// The direction, in the world, of a place in an eye's picture.
+glm::dvec3 rayAt(const Eye& eye, const glm::dvec2& place_px) {
+    const Intrinsics& k = eye.intrinsics;
+    return eye.world_from_camera.orientation *
+           glm::dvec3((place_px.x - k.cx) / k.fx, (place_px.y - k.cy) / k.fy, 1.0);
 }
 
 // Where a place in the view is in the picture.
 glm::dvec2 placeIn(const Eye& picture, const Eye& view, const glm::dvec2& place_px) {
-    const Intrinsics &k = picture.intrinsics, &l = view.intrinsics;
-    const glm::dvec3 ray = glm::conjugate(picture.world_from_camera.orientation) *
-                           (view.world_from_camera.orientation *
-                            glm::dvec3((place_px.x - l.cx) / l.fx, (place_px.y - l.cy) / l.fy, 1.0));
+    const Intrinsics& k = picture.intrinsics;
+    const glm::dvec3 ray = glm::conjugate(picture.world_from_camera.orientation) * rayAt(view, place_px);
     return {k.fx * ray.x / ray.z + k.cx, k.fy * ray.y / ray.z + k.cy};
 }
 
@@ -52,8 +55,7 @@ TEST_CASE("all that a view shows lies in tiles that are not hidden, and most of 
     }
     for (const bool has_lens : {false, true}) {
         const Eye view = turned(eye, 9.0, {0.3, 1.0, 0.8});
-        const auto hidden = hiddenFrom(
-            view, picture, has_lens ? std::span<const std::uint8_t>(lens) : std::span<const std::uint8_t>());
+        const auto hidden = hiddenFrom(view, picture, std::span(lens).first(has_lens ? lens.size() : 0));
         std::size_t lost = 0;
         for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
             for (std::uint32_t x = 0; x < eye.size_px.x; ++x) {
@@ -102,10 +104,7 @@ TEST_CASE("a compositor shows a picture as it is, and one that is turned to a fi
     const Eye view = eyeOf({120, 90}), picture = coverOf(view, kMargin);
     const auto draw = [](const Eye& eye) {
         const auto wave = [&](double x, double y) {
-            const Intrinsics& k = eye.intrinsics;
-            const glm::dvec3 ray =
-                glm::normalize(eye.world_from_camera.orientation *
-                               glm::dvec3((x + 0.5 - k.cx) / k.fx, (y + 0.5 - k.cy) / k.fy, 1.0));
+            const glm::dvec3 ray = glm::normalize(rayAt(eye, {x + 0.5, y + 0.5}));
             return glm::vec3(glm::dvec3(0.5 + 0.3 * std::sin(20.0 * ray.x) * std::cos(15.0 * ray.y)));
         };
         return makePicture(eye.size_px, wave, 4);
@@ -117,11 +116,9 @@ TEST_CASE("a compositor shows a picture as it is, and one that is turned to a fi
 }
 
 TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same bytes, the rest is rendered") {
-    const ViewedScene view = test::viewBuiltin("builtin:atelier", {208, 176}, 20000);
-    KeptFrame frame(context(), view.scene);
-    FrameSettings settings;
-    settings.mode = Mode::kTemporal;
-    settings.keep_history = true;
+    const ViewedScene view = viewAtelier({208, 176});
+    KeptFrame frame(context(), view.scene), full(context(), view.scene);
+    FrameSettings settings = makeSettings(Mode::kTemporal);
     settings.stereo.budget = 1.0;
     settings.stereo.error_bound_db = 20.0;
     StayingAxes axes(kMargin);
@@ -133,22 +130,20 @@ TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same b
         const auto pictures = axes.follow(views);
         settings.hidden_tiles = axes.hiddenTiles();
         const FrameResult result = frame.render(pictures, settings);
-        KeptFrame full(context(), view.scene);
         FrameSettings exact = settings;
         exact.mode = Mode::kShared;
         full.render(pictures, exact);
-        CHECK(test::psnrDb(test::picturesOf(frame), test::picturesOf(full)) > 60.0);
-        if (step > 0) { CHECK(10 * test::countOf(result, "tiles_patched") < 3 * 2 * 13 * 11); }
+        CHECK(psnrDb(picturesOf(frame), picturesOf(full)) > 60.0);
+        if (step > 0) { CHECK(10 * countOf(result, "tiles_patched") < 3 * 2 * 13 * 11); }
         for (std::size_t e = 0; e < 2; ++e) {
             const Image now = frame.readPicture(static_cast<int>(e));
             const auto kinds = frame.readTileKinds(static_cast<int>(e));
             std::size_t other = 0, kept = 0;
             for (std::size_t i = 0; step > 0 && i < now.pixelCount(); ++i) {
-                const std::size_t tile = test::tileOf(i, now.size_px);
+                const std::size_t tile = tileOf(i, now.size_px);
                 if (kinds[tile] != 0 || hidden_before[e][tile] != 0) { continue; }
                 ++kept;
-                other +=
-                    std::equal(&now.values[4 * i], &now.values[4 * i] + 4, &before[e].values[4 * i]) ? 0 : 1;
+                other += !std::equal(&now.values[4 * i], &now.values[4 * i] + 4, &before[e].values[4 * i]);
             }
             CHECK(other == 0);
             CHECK((step == 0 || kept > now.pixelCount() / 3));

@@ -1,34 +1,28 @@
 // Facts about extreme cases: the catalogue and the sequences of `binosplat stability`, but the largest.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/run_case.h"
+#include "engine/scene/pick_splats.h"
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(stability) {
 
 using namespace binosplat::stability;
 
-test::PairOfValues render(const Context& context, const Stage& stage, Mode mode) {
-    FrameSettings settings;
-    settings.mode = mode;
+PairOfValues render(const Context& context, const Stage& stage, Mode mode) {
+    FrameSettings settings = makeSettings(mode);
     settings.near = stage.near;
-    const auto pictures = test::renderPair(context, stage.scene, stage.eyes, settings).pictures;
-    return {pictures[kLeft].values, pictures[kRight].values};
+    KeptFrame frame(context, stage.scene);
+    return renderPair(frame, stage.eyes, settings);
 }
 
-// The first `count` splats of a scene without SH bands.
-Stage keepFirst(Stage stage, std::size_t count) {
-    stage.scene.positions.resize(count);
-    stage.scene.rotations.resize(count);
-    stage.scene.scales.resize(count);
-    if (stage.scene.isGaussian3d()) { stage.scene.thicknesses.resize(count); }
-    stage.scene.opacities.resize(count);
-    stage.scene.sh.resize(3 * count);
-    return stage;
-}
-
+// Nothing is seen of the splats after the first `count`.
 void checkSeesOnlyTheFirst(const Context& context, const Stage& stage, std::size_t count) {
+    std::vector<std::uint32_t> splats(count);
+    std::iota(splats.begin(), splats.end(), 0u);
+    Stage first = stage;
+    first.scene = pickSplats(stage.scene, splats);
     for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
-        CHECK(render(context, stage, mode) == render(context, keepFirst(stage, count), mode));
+        CHECK(render(context, stage, mode) == render(context, first, mode));
     }
 }
 
@@ -43,8 +37,7 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds, i
         const CaseScore score = runner.run(one);
         CHECK(score.pictures.size() == 11);
         for (const PictureScore& picture : score.pictures) {
-            INFO(one.name() << ", " << nameOf(picture.mode) << ", " << picture.eye << ": " << picture.psnr_db
-                            << " dB");
+            INFO(one.name(), ", ", nameOf(picture.mode), ", ", picture.eye, ": ", picture.psnr_db, " dB");
             CHECK(these(picture.not_finite, picture.repeats, picture.passes) == these(0, true, true));
         }
     }
@@ -87,8 +80,7 @@ TEST_CASE_FIXTURE(Gpu, "broken splats, and those of which dimming leaves nothing
 
 TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one" * nightly()) {
     const auto unit = render(context(), makeQuaternions(1.0), Mode::kShared);
-    // Powers of two cause no rounding.
-    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {
+    for (const double length : {0x1p-60, 0.25, 0x1p60}) {  // powers of two cause no rounding
         CHECK(render(context(), makeQuaternions(length), Mode::kShared) == unit);
     }
 }
@@ -107,14 +99,14 @@ TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
     walk.frames = 4;
     walk.equal_from = {};
     CHECK(runner.run(walk).passes);
-    for (const auto& tighten : std::vector<std::function<void(Sequence&)>>{
-             [](Sequence& s) { s.psnr_db = 100.0; }, [](Sequence& s) { s.drift_db = -100.0; },
-             [](Sequence& s) { s.beyond = 0.0; }, [](Sequence& s) { s.bias = 0.0; },
-             [](Sequence& s) { s.equal_from = 3; }}) {
-        Sequence tight = walk;
-        tighten(tight);
-        CHECK_FALSE(runner.run(tight).passes);
-    }
+    std::array<Sequence, 5> tight;
+    tight.fill(walk);
+    tight[0].psnr_db = 100.0;
+    tight[1].drift_db = -100.0;
+    tight[2].beyond = 0.0;
+    tight[3].bias = 0.0;
+    tight[4].equal_from = 3;
+    for (const Sequence& one_too_tight : tight) { CHECK_FALSE(runner.run(one_too_tight).passes); }
 }
 
 }  // SUITE(stability)

@@ -1,5 +1,4 @@
-// Facts about frames with coarse tiles where the eye would not see more: compared with the twin, and with the
-// same frames in full.
+// Facts about frames with coarse tiles where the eye would not see more.
 #include "engine/twin/coarse.h"
 #include "tests/engine/passes/history_stages.h"
 
@@ -7,20 +6,12 @@ SUITE(coarse_frames) {
 
 using Tiles = std::vector<std::uint8_t>;
 
-FrameSettings settingsFor(const Gaze& gaze) {
-    FrameSettings settings = makeSettings(Mode::kMono);
+FrameSettings settingsFor(const Gaze& gaze, Mode mode = Mode::kMono) {
+    FrameSettings settings = makeSettings(mode);
     settings.gazes = {gaze, gaze};
     settings.half_periphery = true;
     return settings;
 }
-// In a frame from which others are made.
-FrameSettings withHistory(const Gaze& gaze) {
-    FrameSettings settings = settingsFor(gaze);
-    settings.mode = Mode::kTemporal;
-    settings.keep_history = true;
-    return settings;
-}
-
 FrameSettings inFull(FrameSettings settings) {
     settings.half_periphery = false;
     return settings;
@@ -38,13 +29,6 @@ std::vector<double> tileErrors(const Image& a, const Image& b) {
     return errors;
 }
 
-Tiles someHidden(const Eye& eye) {
-    const std::uint32_t columns = tilesOf(eye.size_px).x;
-    Tiles hidden(tileCount(eye.size_px));
-    for (std::size_t t = 0; t < hidden.size(); ++t) { hidden[t] = t % columns + t / columns < 6; }
-    return hidden;
-}
-
 // Compares a picture with the twin's, tile by tile: all but `flips` tiles, with a splat at a threshold, must
 // agree, and kinds of tiles and depths must match, too.
 void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::CoarsePicture& twin,
@@ -55,21 +39,19 @@ void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::
     const auto coarse = std::ranges::count(twin.coarse, 1), tried = std::ranges::count(twin.tried, 1);
     CHECK(countOf(result, "tiles_coarse") == within(coarse - 2, coarse + 2));
     CHECK(countOf(result, "tiles_tried_as_coarse") == within(tried - 2, tried + 2));
-    const Image depth = frame.readDominantDepth();
+    const std::vector<float> depths = frame.readDominantDepth().values;
     std::size_t off = 0;
-    for (std::size_t i = 0; i < depth.values.size(); ++i) {
+    for (std::size_t i = 0; i < depths.size(); ++i) {
         const double expected = twin.picture.depth[i];
-        off += std::abs(static_cast<double>(depth.values[i]) - expected) > 1e-3 * (1.0 + expected);
+        off += std::abs(double{depths[i]} - expected) > 1e-3 * (1.0 + expected);
     }
-    CHECK(off <= depth.values.size() / 100);
+    CHECK(off <= depths.size() / 100);
 }
 
 reference::CoarsePicture twinOf(const ViewedScene& view, const FrameSettings& settings) {
-    reference::Settings twin_settings;
-    twin_settings.background = settings.background;
-    twin_settings.inverse_depth_moments = true;
     const Gaze& gaze = settings.gazes[0].value();
-    return reference::renderCoarse(view.scene, view.eye, {gaze.direction, gaze.clear_rad}, twin_settings,
+    return reference::renderCoarse(view.scene, view.eye, {gaze.direction, gaze.clear_rad},
+                                   {.background = settings.background, .inverse_depth_moments = true},
                                    settings.hidden_tiles[0]);
 }
 
@@ -77,9 +59,11 @@ TEST_CASE_FIXTURE(Gpu, "a picture with coarse tiles is the twin's, in odd sizes 
     for (const ViewedScene& view :
          {viewWide({381, 279}), viewGaussians({143, 97}, false), viewGaussians({96, 80}, true)}) {
         KeptFrame frame(context(), view.scene);
-        for (const Tiles& hidden : {Tiles{}, someHidden(view.eye)}) {
-            CAPTURE(view.name);
-            CAPTURE(hidden.empty());
+        const std::uint32_t columns = tilesOf(view.eye.size_px).x;
+        Tiles corner(tileCount(view.eye.size_px));
+        for (std::size_t t = 0; t < corner.size(); ++t) { corner[t] = t % columns + t / columns < 6; }
+        for (const Tiles& hidden : {Tiles{}, corner}) {
+            INFO(view.name, ", whole ", hidden.empty());
             FrameSettings settings =
                 settingsFor(view.scene.isGaussian3d() ? kAside : Gaze{{-0.5, 0.2, 1.0}, 0.15});
             settings.hidden_tiles[0] = hidden;
@@ -103,8 +87,7 @@ TEST_CASE_FIXTURE(Gpu, "however many threads and tiles there are, coarse tiles a
         const auto twin = twinOf(view, settings);
         for (const std::uint32_t threads : {8u, 16u, 32u, 64u}) {
             if (size_px.x < 176 && run++ % 3 != 0) { continue; }
-            CAPTURE(size_px.x);
-            CAPTURE(threads);
+            INFO("width ", size_px.x, ", threads ", threads);
             KeptFrame frame(context(), view.scene, {.threads_per_cell = threads});
             const FrameResult result = frame.render({&view.eye, 1}, settings);
             checkTiles(frame, result, twin, static_cast<std::ptrdiff_t>(twin.coarse.size() / 25));
@@ -116,12 +99,11 @@ TEST_CASE_FIXTURE(Gpu, "however many threads and tiles there are, coarse tiles a
     CHECK(in_full > 10);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it lacks") {
+TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of its pairs, what it lacks") {
     const ViewedScene view = viewWide({176, 144});
     const std::array<Eye, 2> eyes{view.eye, view.eye};
     for (const bool halves : {false, true}) {
-        FrameSettings settings = withHistory(kAside);
+        FrameSettings settings = settingsFor(kAside, Mode::kTemporal);
         settings.half_floats = halves;
         KeptFrame frame(context(), view.scene);
         frame.render(eyes, settings);
@@ -141,8 +123,8 @@ TEST_CASE_FIXTURE(Gpu,
                          inverse_depth = alpha > 0.0 ? twin.picture.inverse_depth[i] / alpha : 0.0;
             if (twin.coarse[tileOf(i, view.eye.size_px)] == 0) { continue; }
             ++pixels;
-            const double made = eye.history.pixels[i] ? eye.history.pixels[i]->inverse_depth : 0.0;
-            off += std::abs(made - inverse_depth) > 1e-3 * inverse_depth;
+            const auto made = eye.history.pixels[i].value_or(reference::MovingPixel{0.0, 0});
+            off += std::abs(made.inverse_depth - inverse_depth) > 1e-3 * inverse_depth;
         }
         CHECK(coarse > 20);
         CHECK(off <= pixels / 100);
@@ -159,15 +141,14 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "what a coarse tile lacks counts as soon as it would be seen, and then it is rendered") {
+TEST_CASE_FIXTURE(Gpu, "what a coarse tile lacks counts once it would be seen, and then it is rendered") {
     // With a squared error of 0.3072.
     const reference::HistoryTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
     CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
     CHECK(reference::withLoss(lacks, 0.09).errors[3] == doctest::Approx(0.42));
     const ViewedScene view = viewWide({176, 144});
     const std::array<Eye, 2> eyes{view.eye, view.eye};
-    FrameSettings settings = withHistory(kAside);
+    FrameSettings settings = settingsFor(kAside, Mode::kTemporal);
     KeptFrame frame(context(), view.scene);
     CHECK(countOf(frame.render(eyes, settings), "tiles_coarse") > 40);
     const Image aside = frame.readPicture(0);
@@ -175,11 +156,11 @@ TEST_CASE_FIXTURE(Gpu,
     for (int i = 0; i < 20; ++i) { frame.render(eyes, settings); }
     const Image made = frame.readPicture(0);
     CHECK(frame.render(eyes, settings).work_rendered == 0.0);
-    const auto other = StereoFrame::beside(frame);
-    other->render(eyes, inFull(settings));
-    CHECK(compare(other->readPicture(0), aside).psnrDb() < 55.0);
+    frame.forgetHistory();
+    frame.render(eyes, inFull(settings));
+    CHECK(compare(frame.readPicture(0), aside).psnrDb() < 55.0);
     // A tile that was expected to lose nothing may stay.
-    CHECK(compare(other->readPicture(0), made).psnrDb() > 65.0);
+    CHECK(compare(frame.readPicture(0), made).psnrDb() > 65.0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the full one, and the rest is hardly noticed") {
@@ -199,7 +180,7 @@ TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the full one, and the 
             if (beyond[t] == 0) { CHECK(errors[t] == 0.0); }
             of_beyond += beyond[t];
             coarse += errors[t] > 0.0;
-            noticed += shares[t] * errors[t] >= static_cast<double>(gpu::kLeastSeenError);
+            noticed += shares[t] * errors[t] >= double{gpu::kLeastSeenError};
         }
         CHECK(100 * noticed <= coarse);
         CHECK(3 * coarse > of_beyond);
@@ -220,38 +201,34 @@ TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or nobody knows where, 
     const FrameResult made = frame.render({&view.eye, 1}, clear);
     CHECK(frame.readPicture(0).values == whole.values);
     CHECK(frame.readDominantDepth().values == depth.values);
-    CHECK(countOf(made, "tiles_tried_as_coarse") == 0);
-    CHECK(countOf(made, "tile_pairs_as_samples") == 0);
-    CHECK(countOf(made, "tile_pairs_in_full") == countOf(full, "tile_pairs"));
-    FrameSettings unknown = clear;
+    CHECK(these(countOf(made, "tiles_tried_as_coarse"), countOf(made, "tile_pairs_as_samples"),
+                countOf(made, "tile_pairs_in_full")) == these(0, 0, countOf(full, "tile_pairs")));
+    FrameSettings unknown = clear, moments = settingsFor({{0.0, 0.0, 1.0}, 0.1});
     unknown.gazes = {};
-    const FrameResult plain = frame.render({&view.eye, 1}, unknown);
-    CHECK(frame.readPicture(0).values == whole.values);
-    CHECK_FALSE(plain.counters.named().contains("tiles_coarse"));
-    // Moments are there on request.
-    FrameSettings moments = settingsFor({{0.0, 0.0, 1.0}, 0.1});
     moments.keep_moments = true;
-    const FrameResult with_moments = frame.render({&view.eye, 1}, moments);
-    CHECK_FALSE(with_moments.counters.named().contains("tiles_coarse"));
-    CHECK(frame.readPicture(0).values == whole.values);
+    for (const FrameSettings& settings : {unknown, moments}) {
+        CAPTURE(settings.keep_moments);
+        CHECK_FALSE(frame.render({&view.eye, 1}, settings).counters.named().contains("tiles_coarse"));
+        CHECK(frame.readPicture(0).values == whole.values);
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "lists that are too short grow, and what coarse tiles take is given back") {
     const ViewedScene view = viewWide({240, 200});
     const FrameSettings settings = settingsFor({{0.0, 0.0, 1.0}, 0.2});
-    KeptFrame short_of(context(), view.scene, {.first_capacity = {256, 256}});
-    const auto roomy = StereoFrame::beside(short_of);
-    const FrameResult result = roomy->render({&view.eye, 1}, settings);
-    const std::uint64_t with_coarse = context().memoryUse().current_bytes;
+    KeptFrame short_of(context(), view.scene, {.first_capacity = {256, 256}}), roomy(context(), view.scene);
+    const auto bytes = [&] { return context().memoryUse().current_bytes.load(); };
+    const FrameResult result = roomy.render({&view.eye, 1}, settings);
+    const std::uint64_t with_coarse = bytes();
     const FrameResult grown = short_of.render({&view.eye, 1}, settings);
-    CHECK(short_of.readPicture(0).values == roomy->readPicture(0).values);
+    CHECK(short_of.readPicture(0).values == roomy.readPicture(0).values);
     for (const char* name : {"tile_pairs", "tiles_coarse", "tile_pairs_as_samples", "tile_pairs_in_full"}) {
         CHECK(countOf(grown, name) == countOf(result, name));
     }
-    const std::uint64_t with_both = context().memoryUse().current_bytes;
+    const std::uint64_t with_both = bytes();
     CHECK(with_both > with_coarse);
-    roomy->render({&view.eye, 1}, inFull(settings));
-    CHECK(context().memoryUse().current_bytes < with_both);
+    roomy.render({&view.eye, 1}, inFull(settings));
+    CHECK(bytes() < with_both);
 }
 
 }  // SUITE(coarse_frames)

@@ -1,5 +1,4 @@
-// Facts about the memory of frames that are not waited for: lists that are too short, sizes that change, and
-// what happens where the device has no more.
+// Facts about the memory of frames that are not waited for, and of a device that has no more.
 #include "tests/engine/frame/frames_ahead.h"
 
 SUITE(frame_memory) {
@@ -47,8 +46,7 @@ TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again o
     for (const Mode mode :
          {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(nameOf(mode));
-        KeptFrame frame(context(), scene, kNoRoom);
-        const auto waited = StereoFrame::beside(frame);
+        KeptFrame frame(context(), scene, kNoRoom), waited(context(), scene);
         std::uint64_t mark = 0, before = 0;
         // The first frame, a jump to where there is nothing, and one back.
         for (const Eye& eye : {view.eye, awayFrom(view.eye), view.eye}) {
@@ -64,8 +62,8 @@ TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again o
             CHECK(countOf(last, "frames_cut_short") == countOf(*first, "frames_cut_short"));
             before = countOf(last, "frames_done_again");
         }
-        for (int step = 0; step < 2; ++step) { waited->render(eyesAt(view.eye, 0), makeSettings(mode)); }
-        CHECK(shownBy(frame) == shownBy(*waited));
+        waited.render(eyesAt(view.eye, 0), makeSettings(mode));
+        CHECK(shownBy(frame) == renderPair(waited, eyesAt(view.eye, 0), makeSettings(mode)));
     }
 }
 
@@ -74,10 +72,8 @@ TEST_CASE_FIXTURE(Atelier, "where a jump may be seen, no frame is waited for, an
                nowhere = eyesAt(awayFrom(view.eye), 0);
     for (const Mode mode : {Mode::kShared, Mode::kTemporal}) {
         for (const bool has_room : {true, false}) {
-            CAPTURE(nameOf(mode));
-            CAPTURE(has_room);
-            KeptFrame frame(context(), scene, kNoRoom);
-            const auto waited = StereoFrame::beside(frame);
+            INFO(nameOf(mode), ", has_room ", has_room);
+            KeptFrame frame(context(), scene, kNoRoom), waited(context(), scene);
             FrameSettings settings = makeSettings(mode);
             settings.waits_for_lists = false;
             if (has_room) { frame.renderAhead(there, settings); }
@@ -98,8 +94,7 @@ TEST_CASE_FIXTURE(Atelier, "where a jump may be seen, no frame is waited for, an
             }
             CHECK((countOf(last, "frames_cut_short") > 0) == !has_room);
             CHECK(countOf(last, "frames_done_again") == 1);  // the first one
-            waited->render(there, settings);
-            CHECK(shownBy(frame) == shownBy(*waited));
+            CHECK(shownBy(frame) == renderPair(waited, there, settings));
         }
     }
 }
@@ -137,43 +132,33 @@ TEST_CASE_FIXTURE(Atelier, "where longer lists do not fit beside the old ones, t
     }
     FrameSettings settings = seeing();
     settings.waits_for_lists = false;
-    struct Bytes {
-        std::uint64_t without_lists, with_few, with_all;
-    };
+    std::uint64_t with_few = 0;  // bytes
     // With `spare`, no more memory is left than that once the first lists are there.
-    const auto goOn = [&](StereoFrame& frame, const Context& on, std::optional<std::uint64_t> spare,
-                          FrameResult& last) {
-        const auto bytes = [&] { return on.memoryUse().current_bytes.load(); };
-        Bytes found{};
-        frame.reserve(less, settings);
-        found.without_lists = bytes();
+    const auto goOn = [&](StereoFrame& frame, const Context& on, std::optional<std::uint64_t> spare) {
         goAhead(frame, less, settings, 1);
-        found.with_few = bytes();
-        const Buffer filler(on, "filler", spare ? on.memoryLimitBytes() - found.with_few - *spare : 0);
+        with_few = on.memoryUse().current_bytes;
+        const Buffer filler(on, "filler", spare ? on.memoryLimitBytes() - with_few - *spare : 0);
+        FrameResult last{};
         for (int round = 0; round < 6; ++round) {
             last = goAhead(frame, all, settings, 3);
             frame.finish();
         }
-        found.with_all = bytes();
-        return found;
+        return countOf(last, "frames_done_again");
     };
     const Context plenty;
     const GpuScene on_plenty(plenty, view.scene);
     StereoFrame with_plenty(plenty, on_plenty, kNoRoom);
-    FrameResult last{};
-    const Bytes bytes = goOn(with_plenty, plenty, std::nullopt, last);
-    CHECK(countOf(last, "frames_done_again") == 1);  // the first one
-    ContextOptions limited;
-    limited.memory_limit_bytes = bytes.with_all + (64 << 20);
-    const Context small(limited);
+    CHECK(goOn(with_plenty, plenty, std::nullopt) == 1);  // the first one
+    const std::uint64_t with_all = plenty.memoryUse().current_bytes, more = with_all - with_few;
+    const Context small({.device = {}, .memory_limit_bytes = with_all + (64 << 20)});
     const GpuScene on_small(small, view.scene);
     const PairOfValues whole = shownBy(with_plenty);
     // Somewhere between too little for any, and enough for old and new ones at a time.
     std::size_t waited = 0;
     for (int tenths = 1; tenths <= 12; ++tenths) {
         StereoFrame frame(small, on_small, kNoRoom);
-        goOn(frame, small, (bytes.with_all - bytes.with_few) * static_cast<std::uint64_t>(tenths) / 10, last);
-        waited += countOf(last, "frames_done_again") > 1 && shownBy(frame) == whole;
+        waited +=
+            goOn(frame, small, more * static_cast<std::uint64_t>(tenths) / 10) > 1 && shownBy(frame) == whole;
     }
     CHECK(waited > 0);
 }
@@ -181,14 +166,12 @@ TEST_CASE_FIXTURE(Atelier, "where longer lists do not fit beside the old ones, t
 TEST_CASE_FIXTURE(Atelier, "a frame that finds no room without a jump is counted, and the next is whole") {
     // Nothing moves but a wall of splats that comes through the near plane.
     const auto eyes = eyesAt(view.eye, 0);
-    KeptFrame frame(context(), scene, kNoRoom);
-    const auto waited = StereoFrame::beside(frame);
+    KeptFrame frame(context(), scene, kNoRoom), waited(context(), scene);
     goAhead(frame, eyes, blind(), 3);
     const FrameResult last = goAhead(frame, eyes, seeing(), 4);
     CHECK(countOf(last, "frames_cut_short") > 0);
     CHECK(countOf(last, "frames_done_again") > 0);
-    waited->render(eyes, seeing());
-    CHECK(shownBy(frame) == shownBy(*waited));
+    CHECK(shownBy(frame) == renderPair(waited, eyes, seeing()));
 }
 
 TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the picture, not the session") {
@@ -219,8 +202,7 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     frame.finish();
     CHECK(countOf(last, "frames_cut_short") == 0);
     roomy.show(roomy_splat);
-    roomy.render(eyesAt(splat.eye, 3), seeing());
-    CHECK(shownBy(frame) == shownBy(roomy));
+    CHECK(shownBy(frame) == renderPair(roomy, eyesAt(splat.eye, 3), seeing()));
     CHECK(tight.validationMessages().empty());
 }
 
@@ -229,9 +211,7 @@ TEST_CASE_FIXTURE(Atelier, "pictures that do not fit are refused before a frame 
     const GpuScene held(tight, view.scene);
     StereoFrame frame(tight, held);
     const FrameSettings settings = makeSettings(Mode::kPredicted);
-    const std::array<Eye, 2> fits = eyesAt(view.eye, 0);
-    std::array<Eye, 2> large = fits;
-    for (Eye& eye : large) { eye.size_px = {4096, 4096}; }
+    const std::array<Eye, 2> fits = eyesAt(view.eye, 0), large = eyesAt(ofSize(view.eye, {4096, 4096}), 0);
     const auto show = [&] {
         for (int step = 0; step < 3; ++step) {
             frame.reserve(fits, settings);

@@ -10,25 +10,18 @@ namespace binosplat::test {
 
 // The kernels of all frames on the tests' own device whose options leave the threads per cell to the device:
 // made once in this program. Other frames make kernels of their own.
-class KeptKernels {
-protected:
-    KeptKernels(const Context& context, const FrameOptions& options)
-        : own_(isShared(context, options) ? nullptr
-                                          : std::make_unique<PassKernels>(context, options.threads_per_cell)),
-          kernels(own_ ? *own_ : shared()) {}
-
-private:
-    static bool isShared(const Context& context, const FrameOptions& options) {
-        return &context == &Gpu::shared() && options.threads_per_cell == 0;
+struct KeptKernels {
+    KeptKernels(const Context& context, const FrameOptions& options) {
+        if (&context != &Gpu::shared() || options.threads_per_cell != 0) {
+            kernels = &own_kernels.emplace(context, options.threads_per_cell);
+            return;
+        }
+        static PassKernels shared(context);
+        kernels = &shared;
     }
-    static PassKernels& shared() {
-        static PassKernels made(Gpu::shared());
-        return made;
-    }
-    std::unique_ptr<PassKernels> own_;
 
-protected:
-    PassKernels& kernels;
+    std::optional<PassKernels> own_kernels;
+    PassKernels* kernels = nullptr;
 };
 
 struct OwnScene {
@@ -38,11 +31,11 @@ struct OwnScene {
 class KeptFrame : private OwnScene, private KeptKernels, public StereoFrame {
 public:
     KeptFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {})
-        : KeptKernels(context, options), StereoFrame(context, scene, kernels, options) {}
+        : KeptKernels(context, options), StereoFrame(context, scene, *kernels, options) {}
     KeptFrame(const Context& context, const Scene& scene, const FrameOptions& options = {})
         : OwnScene{std::optional<GpuScene>(std::in_place, context, scene)},
           KeptKernels(context, options),
-          StereoFrame(context, *own_scene, kernels, options) {}
+          StereoFrame(context, *own_scene, *kernels, options) {}
 };
 
 // Frames that can have a history keep one.
@@ -81,6 +74,17 @@ using PairOfValues = std::array<std::vector<float>, 2>;
 inline PairOfValues shownBy(StereoFrame& frame) {
     return {frame.readPicture(kLeft).values, frame.readPicture(kRight).values};
 }
+inline PairOfValues renderPair(StereoFrame& frame, std::span<const Eye> eyes, const FrameSettings& settings) {
+    frame.render(eyes, settings);
+    return shownBy(frame);
+}
+
+// One eye's picture in such a frame.
+inline Image renderEye(StereoFrame& frame, const Eye& eye,
+                       const FrameSettings& settings = makeSettings(Mode::kMono)) {
+    frame.render({&eye, 1}, settings);
+    return frame.readPicture(0);
+}
 
 // The lower value of the two eyes.
 inline double psnrDb(const std::array<Image, 2>& a, const std::array<Image, 2>& b) {
@@ -92,22 +96,11 @@ struct MonoFrame {
     Image picture, depth, moments;
 };
 inline MonoFrame renderMono(const Context& context, const Scene& scene, const Eye& eye,
-                            const FrameSettings& settings, const FrameOptions& options = {}) {
-    KeptFrame frame(context, scene, options);
+                            const FrameSettings& settings = makeSettings(Mode::kMono)) {
+    KeptFrame frame(context, scene);
     FrameResult result = frame.render({&eye, 1}, settings);
     return {std::move(result), frame.readPicture(0), frame.readDominantDepth(),
             settings.keep_moments ? frame.readInverseDepthMoments() : Image{}};
-}
-
-struct PairOfPictures {
-    FrameResult result;
-    std::array<Image, 2> pictures;
-};
-inline PairOfPictures renderPair(const Context& context, const Scene& scene, const std::array<Eye, 2>& eyes,
-                                 const FrameSettings& settings, const FrameOptions& options = {}) {
-    KeptFrame frame(context, scene, options);
-    FrameResult result = frame.render(eyes, settings);
-    return {std::move(result), picturesOf(frame)};
 }
 
 }  // namespace binosplat::test

@@ -1,5 +1,4 @@
-// Pictures that must not change, in golden/: the twin's pictures of a few scenes, and the last pair of a
-// walk.
+// Pictures that must not change, in golden/: the twin's of a few scenes, and the last pair of a walk.
 #include "engine/picture/image_io.h"
 #include "engine/stream/moving_scene.h"
 #include "tests/engine/files/ply_files.h"
@@ -14,15 +13,12 @@ constexpr double kLeastDb = 50.0;  // 8 bits alone leave 59
 // For a walk: a tile whose price differs slightly in float32 is rendered a frame earlier or later.
 constexpr double kLeastWalkDb = 45.0;
 
-fs::path stemOf(const std::string& name) { return fs::path(BINOSPLAT_SOURCE_DIR) / "tests/golden" / name; }
-
 // Reads the file; with BINOSPLAT_WRITE_GOLDENS=1, it is written first.
 Image readGolden(const std::string& name, const Image& made) {
+    const std::string stem = BINOSPLAT_SOURCE_DIR "/tests/golden/" + name;
     const char* write = std::getenv("BINOSPLAT_WRITE_GOLDENS");
-    if (write != nullptr && std::string(write) == "1") {
-        writePicture(stemOf(name), PictureKind::kDisplay, made);
-    }
-    return readPicture(stemOf(name).string() + ".png");
+    if (write != nullptr && std::string(write) == "1") { writePicture(stem, PictureKind::kDisplay, made); }
+    return readPicture(stem + ".png");
 }
 
 // Longer walks diverge: if float32 prices one of the 70 tiles differently, the pictures differ from then on.
@@ -41,31 +37,23 @@ std::array<Eye, 2> eyesAt(const Eye& start, int frame) {
 
 // Left and right side by side.
 Image besideEachOther(const std::array<Image, 2>& pair) {
-    const glm::uvec2 size_px = pair[0].size_px;
-    Image both{{2 * size_px.x, size_px.y}, pair[0].channels, {}};
-    const auto row_values = static_cast<std::ptrdiff_t>(size_px.x) * pair[0].channels;
-    for (std::ptrdiff_t y = 0; y < static_cast<std::ptrdiff_t>(size_px.y); ++y) {
+    const auto [width, height] = std::pair(pair[0].size_px.x, pair[0].size_px.y);
+    Image both{{2 * width, height}, 4, {}};
+    for (std::uint32_t y = 0; y < height; ++y) {
         for (const Image& image : pair) {
-            const auto row = image.values.begin() + y * row_values;
-            both.values.insert(both.values.end(), row, row + row_values);
+            const float* row = &image.values[std::size_t{4} * width * y];
+            both.values.insert(both.values.end(), row, row + std::size_t{4} * width);
         }
     }
     return both;
 }
 
-// The sliding objects move on by 8 cm every second frame.
-Scene sceneAt(int frame) { return shakenAtelier(4 * (frame / 2), 1000); }
-constexpr double kSceneRate = 45.0, kDisplayRate = 90.0;
-
-TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render") {
+TEST_CASE("the golden pictures are what the twin renders") {
     for (const auto& [name, splats] : {std::pair("fence", 0u), std::pair("atelier", 20000u)}) {
         const ViewedScene view = viewBuiltin("builtin:" + std::string(name), {192, 192}, splats);
         const Image twin = toImage(reference::render(view.scene, view.eye, {}));
-        const Image expected = readGolden(name, twin);
         CAPTURE(name);
-        CHECK(compare(expected, twin).psnrDb() >= kLeastDb);
-        const auto device = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono));
-        CHECK(compare(expected, device.picture).psnrDb() >= kLeastDb);
+        CHECK(compare(readGolden(name, twin), twin).psnrDb() >= kLeastDb);
     }
 }
 
@@ -73,9 +61,9 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render") {
 // together.
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what it was") {
     const Folder folder;
-    writeFilm(folder.file("film"), kFrames / 2 + 1, [](int frame) { return sceneAt(2 * frame); });
-    MovingScene moving(context(), SceneSeries(folder.file("film")),
-                       {.rate_hz = kSceneRate, .memory_bytes = 1});
+    // The sliding objects move on by 8 cm every second frame.
+    writeFilm(folder.file("film"), kFrames / 2 + 1, [](int at) { return shakenAtelier(4 * at, 1000); });
+    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = 45.0, .memory_bytes = 1});
     KeptFrame frame(context(), moving.scene());
     FrameSettings settings = makeSettings(Mode::kTemporal);
     settings.stereo.budget = kBudget;
@@ -83,21 +71,12 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what 
     view.fov_x_deg = 50.0;  // the sliding objects change a third of the tiles
     const Eye start = eyeOf(view, {112, 80});
     for (int i = 0; i <= kFrames; ++i) {
-        moving.setTime(i / kDisplayRate);
+        moving.setTime(i / 90.0);
         moving.settle({});
         frame.render(eyesAt(start, i), settings);
     }
     const Image device = besideEachOther(picturesOf(frame));
     CHECK(compare(readGolden("walk", device), device).psnrDb() >= kLeastWalkDb);
-    // What moved is shown where it is now, not where it was.
-    const auto eyes = eyesAt(start, kFrames);
-    const auto fullOf = [&](const Scene& scene) {
-        return besideEachOther({toImage(reference::render(scene, eyes[kLeft], {})),
-                                toImage(reference::render(scene, eyes[kRight], {}))});
-    };
-    const double now_db = compare(fullOf(sceneAt(kFrames)), device).psnrDb();
-    CHECK(now_db > 35.0);
-    CHECK(compare(fullOf(sceneAt(kFrames - 2)), device).psnrDb() < now_db - 5.0);
 }
 
 #endif

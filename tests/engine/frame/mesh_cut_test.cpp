@@ -1,5 +1,4 @@
-// Facts about meshes that cut through splats: in every pixel, a splat shows where it is nearer; the rest of
-// the picture follows suit.
+// Facts about meshes that cut through splats: in every pixel, a splat shows where it is nearer.
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(mesh_cut) {
@@ -41,16 +40,14 @@ Scene makeMist(std::size_t splats, bool gaussians) {
 }
 
 TEST_CASE_FIXTURE(Gpu, "a slanted plane through a cloud hides at every pixel what its twin hides") {
-    Eye eye{{}, intrinsicsFromFovX(1.0, {100, 84}), {100, 84}};
+    const Eye eye{{}, intrinsicsFromFovX(1.0, {100, 84}), {100, 84}};
     const glm::dvec3 normal = glm::normalize(glm::dvec3(0.5, 0.3, 1.0));
     for (const bool gaussians : {false, true}) {
         const Scene mist = makeMist(400, gaussians);
-        const GpuScene scene(context(), mist);
-        KeptFrame frame(context(), scene);
+        KeptFrame frame(context(), mist);
         for (const Mode mode : {Mode::kMono, Mode::kTwoPass, Mode::kShared}) {
             const std::array<Eye, 2> pair = stereoPair(eye, 0.063);
-            const std::vector<Eye> eyes =
-                mode == Mode::kMono ? std::vector<Eye>{eye} : std::vector<Eye>{pair.begin(), pair.end()};
+            const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&eye, 1) : std::span(pair);
             FrameSettings settings = makeSettings(mode);
             settings.background = glm::dvec3(0.1, 0.2, 0.3);
             std::array<std::vector<double>, 2> planes;
@@ -66,43 +63,33 @@ TEST_CASE_FIXTURE(Gpu, "a slanted plane through a cloud hides at every pixel wha
             }
             frame.render(eyes, settings);
             for (std::size_t e = 0; e < eyes.size(); ++e) {
-                reference::Settings twin;
-                twin.near = settings.near;
-                twin.background = settings.background;
-                const reference::Picture whole = reference::render(mist, eyes[e], twin);
+                INFO("mode ", nameOf(mode), ", gaussians ", gaussians, ", eye ", e);
+                reference::Settings twin{.near = settings.near, .background = settings.background};
+                const Image seen = frame.readPicture(static_cast<int>(e)),
+                            whole = toImage(reference::render(mist, eyes[e], twin));
                 twin.mesh_depths = planes[e];
-                const reference::Picture cut = reference::render(mist, eyes[e], twin);
-                const Image seen = frame.readPicture(static_cast<int>(e));
-                INFO("mode ", static_cast<int>(mode), ", gaussians ", gaussians, ", eye ", e);
-                // A splat that crosses the plane in the middle of a pixel may fall on either side of it by
-                // rounding.
-                CHECK(compare(seen, toImage(cut), 4, 2e-3).off <= 2);
-                CHECK(compare(seen, toImage(whole), 4, 2e-2).off > 9000);
+                const Image cut = toImage(reference::render(mist, eyes[e], twin));
+                // By rounding, a splat that crosses the plane in the middle of a pixel is on either side.
+                CHECK(compare(seen, cut, 4, 2e-3).off <= 2);
+                CHECK(compare(seen, whole, 4, 2e-2).off > 9000);
             }
         }
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "a mesh behind everything hides nothing, to the last bit, and one before it all") {
-    const Scene mist = makeMist(300, false);
-    const GpuScene scene(context(), mist);
-    KeptFrame frame(context(), scene);
-    const std::vector<Eye> eyes{{{}, intrinsicsFromFovX(1.0, {40, 30}), {40, 30}}};
-    FrameSettings settings = makeSettings(Mode::kMono);
-    frame.render(eyes, settings);
-    const std::vector<float> whole = frame.readPicture(0).values;
-    for (const float stored : {kOffset, kOffset + 4.0f * kScale}) {  // infinitely far away; at 0.25
+    KeptFrame frame(context(), makeMist(300, false));
+    const Eye eye{{}, intrinsicsFromFovX(1.0, {40, 30}), {40, 30}};
+    const auto seenAt = [&](float stored) {
         const Buffer mesh = upload("mesh depths", std::vector<float>(1200, stored));
+        FrameSettings settings = makeSettings(Mode::kMono);
         settings.mesh_depths[0] = MeshDepths{mesh.address<float>(), kScale, kOffset};
-        frame.render(eyes, settings);
-        const std::vector<float> seen = frame.readPicture(0).values;
-        if (stored == kOffset) {
-            CHECK(seen == whole);
-        } else {
-            CHECK(*std::ranges::max_element(seen) == 0.0f);
-        }
-    }
-    CHECK(*std::ranges::max_element(whole) > 0.1f);
+        return renderEye(frame, eye, settings).values;
+    };
+    const std::vector<float> whole = renderEye(frame, eye).values;
+    CHECK(std::ranges::max(whole) > 0.1f);
+    CHECK(seenAt(kOffset) == whole);                                   // infinitely far away
+    CHECK(std::ranges::max(seenAt(kOffset + 4.0f * kScale)) == 0.0f);  // at 0.25
 }
 
 }  // SUITE(mesh_cut)

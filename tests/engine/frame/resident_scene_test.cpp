@@ -5,14 +5,14 @@
 SUITE(resident_scene) {
 
 // In Morton's order.
-ViewedScene viewOrdered(glm::uvec2 size_px = {96, 80}) {
-    ViewedScene view = viewAtelier(size_px);
+ViewedScene inOrder(ViewedScene view) {
     view.scene = inMortonOrder(view.scene);
     return view;
 }
 
 struct Atelier : Gpu {
-    const ViewedScene view = viewOrdered();
+    const ViewedScene view = inOrder(viewAtelier({96, 80}));
+    const std::vector<Eye> eye{view.eye};
 };
 
 std::vector<Eye> eyesFor(Mode mode, const Eye& middle, double cant = 0.0) {
@@ -23,7 +23,7 @@ std::vector<Eye> eyesFor(Mode mode, const Eye& middle, double cant = 0.0) {
 
 // The values of each eye's picture.
 std::vector<std::vector<float>> render(StereoFrame& frame, const std::vector<Eye>& eyes,
-                                       const FrameSettings& settings) {
+                                       const FrameSettings& settings = makeSettings(Mode::kMono)) {
     frame.render(eyes, settings);
     std::vector<std::vector<float>> pictures;
     for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {
@@ -44,104 +44,102 @@ std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     return some;
 }
 
-constexpr std::array kModes{Mode::kMono,      Mode::kTwoPass,   Mode::kShared,  Mode::kPaper,
-                            Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
+// Room for a scene and some more pages, to which parts of it come.
+struct Room : ResidentScene {
+    Room(const Context& context, const Scene& whole, std::uint32_t more = 0)
+        : ResidentScene(context, traitsOf(whole), {.capacity_pages = pagesOf(whole.size()) + more}) {}
 
-void checkPagesAreTheScene(const Context& context, const Scene& in_order, const Eye& start,
-                           std::span<const Mode> modes, double cant) {
-    const GpuScene whole(context, in_order);
-    for (const Mode mode : modes) {
-        INFO("mode ", static_cast<int>(mode), ", cant ", cant);
-        const WholeInPages pages(context, in_order, 7);
-        KeptFrame frame(context, pages.resident.scene());
-        const auto other = StereoFrame::beside(frame);
-        other->show(whole);
-        FrameSettings settings = makeSettings(mode);
-        settings.order = cant > 0.0 ? Order::kDistance : Order::kDepth;
-        for (int step = 0; step < 3; ++step) {
-            Eye eye = start;
-            eye.world_from_camera.position.x += 0.004 * step;
-            const std::vector<Eye> eyes = eyesFor(mode, eye, cant);
-            CHECK(render(frame, eyes, settings) == render(*other, eyes, settings));
-        }
+    std::optional<Part> add(const Scene& part, float fade = 1.0f) {
+        return ResidentScene::add(PackedPages(part, traits()), fade);
+    }
+    std::vector<Part> addAll(const std::vector<Scene>& scenes) {
+        std::vector<Part> parts;
+        for (const Scene& scene : scenes) { parts.push_back(add(scene).value()); }
+        return parts;
+    }
+};
+
+void checkPagesAreTheScene(const Context& context, const ViewedScene& view, Mode mode, double cant = 0.0) {
+    INFO(view.name, ", ", nameOf(mode), ", cant ", cant);
+    const WholeInPages pages(context, view.scene, 7);
+    KeptFrame frame(context, pages.resident.scene()), other(context, view.scene);
+    FrameSettings settings = makeSettings(mode);
+    settings.order = cant > 0.0 ? Order::kDistance : Order::kDepth;
+    for (int step = 0; step < 3; ++step) {
+        Eye eye = view.eye;
+        eye.world_from_camera.position.x += 0.004 * step;
+        const std::vector<Eye> eyes = eyesFor(mode, eye, cant);
+        CHECK(render(frame, eyes, settings) == render(other, eyes, settings));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte") {
-    const ViewedScene view = viewOrdered(), gaussians = viewGaussians({96, 80}, true);
-    checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kPaper}, 0.0);
-    checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kTemporal}, 0.05);
-    checkPagesAreTheScene(context(), inMortonOrder(gaussians.scene), gaussians.eye, std::array{Mode::kMono},
-                          0.0);
+TEST_CASE_FIXTURE(Atelier, "all of a scene in pages is the scene that stays, byte for byte") {
+    checkPagesAreTheScene(context(), view, Mode::kPaper);
+    checkPagesAreTheScene(context(), view, Mode::kTemporal, 0.05);
+    checkPagesAreTheScene(context(), inOrder(viewGaussians({96, 80}, true)), Mode::kMono);
 }
 
-TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, in every mode" * nightly()) {
-    const ViewedScene view = viewOrdered(), gaussians = viewGaussians({96, 80}, true);
-    checkPagesAreTheScene(context(), view.scene, view.eye, kModes, 0.0);
-    checkPagesAreTheScene(context(), view.scene, view.eye, std::span(kModes).subspan(1), 0.05);
-    checkPagesAreTheScene(context(), inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
+TEST_CASE_FIXTURE(Atelier, "all of a scene in pages is the scene that stays, in every mode" * nightly()) {
+    for (const Mode mode : {Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kPaper, Mode::kPredicted,
+                            Mode::kAlternate, Mode::kTemporal}) {
+        for (const double cant : {0.0, 0.05}) { checkPagesAreTheScene(context(), view, mode, cant); }
+        checkPagesAreTheScene(context(), inOrder(viewGaussians({96, 80}, true)), mode);
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, and hundreds of changes take no memory") {
-    const ViewedScene view = viewOrdered({160, 144});
+    const ViewedScene view = inOrder(viewAtelier({160, 144}));
     constexpr std::uint32_t kParts = 16;
     const std::vector<Scene> parts = inParts(view.scene, kParts);
-    ResidentScene resident(context(), traitsOf(view.scene),
-                           {.capacity_pages = pagesOf(view.scene.size()) + kParts});
-    KeptFrame frame(context(), resident.scene());
-    std::vector<std::optional<ResidentScene::Part>> there(parts.size());
+    Room room(context(), view.scene, kParts);
+    KeptFrame frame(context(), room.scene());
+    std::vector<std::optional<ResidentScene::Part>> there(kParts);
     std::mt19937 random(5);
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
+    const FrameSettings settings = makeSettings(Mode::kShared);
     std::uint64_t bytes = 0;
     for (int step = 0; step < 50; ++step) {
-        for (std::size_t p = 0; p < parts.size(); ++p) {
+        for (std::size_t p = 0; p < kParts; ++p) {
             if (random() % 2 == 0) { continue; }
             if (there[p]) {
-                resident.remove(*std::exchange(there[p], std::nullopt));
+                room.remove(*std::exchange(there[p], std::nullopt));
             } else {
-                there[p] = resident.add(PackedPages(parts[p], resident.traits()));
-                REQUIRE(there[p].has_value());
+                there[p] = room.add(parts[p]).value();
             }
         }
-        frame.renderAhead(eyes, makeSettings(Mode::kShared));
-        if (step == 10) { bytes = resident.scene().bytes(); }
+        frame.renderAhead(eyes, settings);
+        if (step == 10) { bytes = room.scene().bytes(); }
         if (step % 10 != 9) { continue; }
         const auto pictures = picturesOf(frame);
         Scene scene = pickSplats(view.scene, {});
         for (std::size_t p = 0; p < kParts; ++p) {
             if (there[p]) { appendSplats(scene, parts[p]); }
         }
-        CHECK(resident.splatsShown() == scene.size());
-        const GpuScene whole(context(), scene);
-        const auto other = StereoFrame::beside(frame);
-        other->show(whole);
-        other->render(eyes, makeSettings(Mode::kShared));
+        CHECK(room.splatsShown() == scene.size());
+        KeptFrame other(context(), scene);
+        other.render(eyes, settings);
         // Splats of equal depth are ordered by their places in memory, which differ.
-        CHECK(psnrDb(pictures, picturesOf(*other)) >= 100.0);
+        CHECK(psnrDb(pictures, picturesOf(other)) >= 100.0);
     }
     frame.finish();
-    CHECK(resident.scene().bytes() == bytes);
+    CHECK(room.scene().bytes() == bytes);
     for (const auto& part : there) {
-        if (part) { resident.remove(*part); }
+        if (part) { room.remove(*part); }
     }
-    CHECK(resident.freePages() == resident.capacityPages());
-    CHECK(countOf(frame.render(eyes, makeSettings(Mode::kShared)), "splats_visible_left") == 0);
+    CHECK(room.freePages() == room.capacityPages());
+    CHECK(countOf(frame.render(eyes, settings), "splats_visible_left") == 0);
 }
 
 TEST_CASE_FIXTURE(Atelier, "a fade multiplies opacities, and at 0 nothing is seen or culled") {
     WholeInPages pages(context(), view.scene);
     KeptFrame frame(context(), pages.resident.scene());
-    const std::vector<Eye> eyes{view.eye};
     for (const float fade : {1.0f, 0.37f, 0.0f, 0.9f}) {
         CAPTURE(fade);
         pages.resident.setFade(pages.part, fade);
-        const auto pictures = render(frame, eyes, makeSettings(Mode::kMono));
         Scene scene = view.scene;
         for (float& opacity : scene.opacities) { opacity *= fade; }
-        const GpuScene whole(context(), scene);
-        const auto other = StereoFrame::beside(frame);
-        other->show(whole);
-        CHECK(render(*other, eyes, makeSettings(Mode::kMono)) == pictures);
+        KeptFrame other(context(), scene);
+        CHECK(render(frame, eye) == render(other, eye));
     }
 }
 
@@ -149,38 +147,39 @@ TEST_CASE_FIXTURE(Atelier, "a part that is longer than what a frame brings is se
     const std::uint32_t pages = pagesOf(view.scene.size());
     ResidentScene resident(context(), traitsOf(view.scene),
                            {.capacity_pages = pages, .most_bytes_a_frame = 1});
-    const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
+    const auto add = [&] { return resident.add(PackedPages(view.scene, resident.traits())).value(); };
+    const ResidentScene::Part part = add();
     KeptFrame frame(context(), resident.scene());
-    const std::vector<Eye> eyes{view.eye};
+    const auto countVisible = [&] {
+        return countOf(frame.render(eye, makeSettings(Mode::kMono)), "splats_visible");
+    };
     for (std::uint32_t page = 1; page <= pages; ++page) {
-        const FrameResult result = frame.render(eyes, makeSettings(Mode::kMono));
+        CHECK((countVisible() > 0) == (page == pages));
         CHECK(resident.isInPlace(part) == (page == pages));
-        CHECK((countOf(result, "splats_visible") > 0) == (page == pages));
     }
     CHECK(resident.splatsShown() == view.scene.size());
     CHECK_FALSE(resident.hasChanges());
     // A part that is removed before that was never there.
     resident.remove(part);
-    const ResidentScene::Part other = resident.add(PackedPages(view.scene, resident.traits())).value();
-    frame.render(eyes, makeSettings(Mode::kMono));
+    const ResidentScene::Part other = add();
+    (void)countVisible();
     resident.remove(other);
-    CHECK(countOf(frame.render(eyes, makeSettings(Mode::kMono)), "splats_visible") == 0);
+    CHECK(countVisible() == 0);
     CHECK(these(resident.splatsAdded(), resident.freePages()) == these(0, pages));
 }
 
 TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused, and the rest stays") {
-    const std::uint32_t pages = pagesOf(view.scene.size());
-    CHECK_THROWS_AS(ResidentScene(context(), traitsOf(view.scene), {.capacity_pages = 0}), Error);
-    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = pages + 1});
-    const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
-    PackedPages more(view.scene, 0, gpu::kPageSplats + 1, resident.traits());
+    const SceneTraits traits = traitsOf(view.scene);
+    CHECK_THROWS_AS(ResidentScene(context(), traits, {.capacity_pages = 0}), Error);
+    ResidentScene resident(context(), traits, {.capacity_pages = pagesOf(view.scene.size()) + 1});
+    const ResidentScene::Part part = resident.add(PackedPages(view.scene, traits)).value();
+    PackedPages more(view.scene, 0, gpu::kPageSplats + 1, traits);
     CHECK_FALSE(resident.add(std::move(more)).has_value());
-    CHECK(more.pageCount() == 2);  // unchanged
-    CHECK(resident.freePages() == 1);
-    CHECK(resident.add(PackedPages(view.scene, 0, gpu::kPageSplats, resident.traits())).has_value());
+    CHECK(these(more.pageCount(), resident.freePages()) == these(2, 1));  // unchanged
+    CHECK(resident.add(PackedPages(view.scene, 0, gpu::kPageSplats, traits)).has_value());
     resident.remove(part);
     CHECK(resident.add(std::move(more)).has_value());
-    CHECK_THROWS_AS(PackedPages(viewGaussians({16, 16}, false).scene, resident.traits()), Error);
+    CHECK_THROWS_AS(PackedPages(viewGaussians({16, 16}, false).scene, traits), Error);
 }
 
 TEST_CASE_FIXTURE(Gpu, "colours with fewer SH bands than the scene's stay, those with more lose them") {
@@ -190,13 +189,13 @@ TEST_CASE_FIXTURE(Gpu, "colours with fewer SH bands than the scene's stay, those
     LoadNotes notes;
     limitShDegree(flat, 0, notes);
     KeptFrame other(context(), flat);
-    const auto wanted = render(other, {view.eye}, makeSettings(Mode::kMono));
+    const auto wanted = render(other, {view.eye});
     for (const auto& [scene, traits] :
          {std::pair(&flat, traitsOf(view.scene)), std::pair(&view.scene, traitsOf(flat))}) {
         ResidentScene resident(context(), traits, {.capacity_pages = pagesOf(scene->size())});
         REQUIRE(resident.add(PackedPages(*scene, traits)).has_value());
         other.show(resident.scene());
-        CHECK(render(other, {view.eye}, makeSettings(Mode::kMono)) == wanted);
+        CHECK(render(other, {view.eye}) == wanted);
     }
 }
 
@@ -217,16 +216,14 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     vk::PhysicalDeviceTimelineSemaphoreFeatures waits_for_host(VK_TRUE);
     const Context context(
         {.device = {}, .validation = true, .max_allocation_bytes = 0, .device_features = &waits_for_host});
-    const ViewedScene view = viewOrdered();
+    const ViewedScene view = inOrder(viewAtelier({96, 80}));
     const std::vector<Scene> parts = inParts(view.scene, 4);
-    ResidentScene resident(context, traitsOf(view.scene), {.capacity_pages = pagesOf(view.scene.size()) + 4});
-    std::vector<ResidentScene::Part> there;
-    for (const Scene& part : parts) {
-        there.push_back(resident.add(PackedPages(part, resident.traits())).value());
-    }
-    StereoFrame frame(context, resident.scene());
+    Room room(context, view.scene, 4);
+    const std::vector<ResidentScene::Part> there = room.addAll(parts);
+    StereoFrame frame(context, room.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
-    frame.renderAhead(eyes, makeSettings(Mode::kShared));
+    const FrameSettings settings = makeSettings(Mode::kShared);
+    frame.renderAhead(eyes, settings);
     // Everything submitted from now on waits for the host. If this waited for a frame, with changes or
     // without, it would wait for ever.
     const vk::SemaphoreTypeCreateInfo timeline(vk::SemaphoreType::eTimeline, 0);
@@ -241,53 +238,44 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     hold[0].pipelineBarrier(stages, stages, {}, {}, {}, {});
     hold[0].end();
     context.queue().submit(vk::SubmitInfo(*gate, stages, *hold[0], {}, &values));
-    resident.remove(there[0]);
-    resident.setFade(there[1], 0.5f);
-    CHECK_FALSE(frame.renderAhead(eyes, makeSettings(Mode::kShared)).has_value());
+    room.remove(there[0]);
+    room.setFade(there[1], 0.5f);
+    CHECK_FALSE(frame.renderAhead(eyes, settings).has_value());
     // Into the place of the first part, which the frame in flight still reads.
-    REQUIRE(resident.add(PackedPages(parts[0], resident.traits())).has_value());
-    resident.remove(there[2]);
-    CHECK_FALSE(frame.renderAhead(eyes, makeSettings(Mode::kShared)).has_value());
+    REQUIRE(room.add(parts[0]).has_value());
+    room.remove(there[2]);
+    CHECK_FALSE(frame.renderAhead(eyes, settings).has_value());
     context.device().signalSemaphore(vk::SemaphoreSignalInfo(*gate, kOpen));
-    const auto last = frame.finish();
-    REQUIRE(last.has_value());
-    CHECK(countOf(*last, "frames_cut_short") == 0);
-    CHECK(countOf(*last, "splats_visible_left") > 0);
+    const FrameResult last = frame.finish().value();
+    CHECK(countOf(last, "frames_cut_short") == 0);
+    CHECK(countOf(last, "splats_visible_left") > 0);
     context.device().waitIdle();
     CHECK(context.validationMessages().empty());
 }
 
 TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is cut short for it") {
     const std::vector<Scene> parts = inParts(view.scene, 8);
-    ResidentScene resident(context(), traitsOf(view.scene),
-                           {.capacity_pages = pagesOf(view.scene.size()) + 8});
-    KeptFrame frame(context(), resident.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});
-    const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
+    Room room(context(), view.scene, 8);
+    KeptFrame frame(context(), room.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});
     for (std::size_t step = 0; step < 24; ++step) {
-        if (step % 3 == 0) {
-            REQUIRE(resident.add(PackedPages(parts[step / 3], resident.traits())).has_value());
-        }
-        frame.renderAhead(eyes, makeSettings(Mode::kShared));
+        if (step % 3 == 0) { REQUIRE(room.add(parts[step / 3]).has_value()); }
+        frame.renderAhead(eyesFor(Mode::kShared, view.eye), makeSettings(Mode::kShared));
     }
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures from histories are right within some frames") {
-    const ViewedScene view = viewOrdered({160, 144});
+    const ViewedScene view = inOrder(viewAtelier({160, 144}));
     // What is in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
     Scene other = parts[5];
     for (float& value : other.sh) { value = -value; }
     for (const bool fades : {false, true}) {
         CAPTURE(fades);
-        ResidentScene resident(context(), traitsOf(view.scene),
-                               {.capacity_pages = pagesOf(view.scene.size()) + 24});
-        std::vector<ResidentScene::Part> there;
-        for (const Scene& part : parts) {
-            there.push_back(resident.add(PackedPages(part, resident.traits())).value());
-        }
+        Room room(context(), view.scene, 24);
+        const std::vector<ResidentScene::Part> there = room.addAll(parts);
         // The other frames are recorded after the first, which brings the changes.
-        KeptFrame first(context(), resident.scene());
+        KeptFrame first(context(), room.scene());
         const auto second = StereoFrame::beside(first), full = StereoFrame::beside(first);
         Eye eye = view.eye;
         int step = 0;
@@ -303,16 +291,15 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures from histories are r
         };
         std::array<double, 2> before{}, after{};
         for (int frame = 0; frame < 12; ++frame) { before = psnrs(); }
-        const ResidentScene::Part come =
-            resident.add(PackedPages(other, resident.traits()), fades ? 0.0f : 1.0f).value();
+        const ResidentScene::Part come = room.add(other, fades ? 0.0f : 1.0f).value();
         if (fades) {
-            for (int frame = 1; frame <= 4; ++frame) {
-                resident.setFade(come, 0.25f * static_cast<float>(frame));
-                resident.setFade(there[5], 1.0f - 0.25f * static_cast<float>(frame));
+            for (const float share : {0.25f, 0.5f, 0.75f, 1.0f}) {
+                room.setFade(come, share);
+                room.setFade(there[5], 1.0f - share);
                 psnrs();
             }
         } else {
-            resident.remove(there[5]);
+            room.remove(there[5]);
         }
         for (int frame = 0; frame < 8; ++frame) { after = psnrs(); }
         // If changes were not announced: 17.5 dB lower, and 2.9 lower while it fades.
@@ -322,8 +309,7 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures from histories are r
 }
 
 TEST_CASE_FIXTURE(Gpu, "a frame looks at the pages that may be seen, and says how many") {
-    ViewedScene view = viewBuiltin("builtin:atelier", {96, 96}, 100000);
-    view.scene = inMortonOrder(view.scene);
+    const ViewedScene view = inOrder(viewBuiltin("builtin:atelier", {96, 96}, 100000));
     const std::uint32_t pages = pagesOf(view.scene.size());
     std::vector<reference::Page> bounds;
     for (std::uint32_t p = 0; p < pages; ++p) {
@@ -336,13 +322,11 @@ TEST_CASE_FIXTURE(Gpu, "a frame looks at the pages that may be seen, and says ho
     for (const double zoom : {1.0, 2.0, 8.0, 16.0}) {
         CAPTURE(zoom);
         Eye eye = view.eye;
-        eye.intrinsics.fx *= zoom;
-        eye.intrinsics.fy *= zoom;
+        eye.intrinsics.fx *= zoom, eye.intrinsics.fy *= zoom;
         const FrameResult result = frame.render({&eye, 1}, makeSettings(Mode::kMono));
-        const auto found = reference::cullPages(bounds, false, {&eye, 1}, {});
-        const auto seen = static_cast<double>(std::ranges::count(found, 1));
+        const auto seen = std::ranges::count(reference::cullPages(bounds, false, {&eye, 1}, {}), 1);
         CHECK(countOf(result, "pages_resident") == pages);
-        CHECK(std::abs(static_cast<double>(countOf(result, "pages_seen")) - seen) <= 2.0);
+        CHECK(countOf(result, "pages_seen") == within(seen - 2, seen + 2));
         CHECK(countOf(result, "splats_visible") > 0);
         // Boxes find about twice as many pages as hold a visible splat, and not more.
         const auto visible = reference::cull(view.scene, {&eye, 1}, {});

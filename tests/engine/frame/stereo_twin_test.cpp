@@ -14,9 +14,8 @@ struct View {
 };
 
 std::vector<View> makeViews() {
-    const auto room = viewBuiltin("builtin:atelier", {160, 120}, 20000),
-               fence = viewBuiltin("builtin:fence", {160, 120});
-    const auto gaussians = viewGaussians({160, 120}, false), dimmed = viewGaussians({160, 120}, true);
+    const auto room = viewAtelier({160, 120}), fence = viewBuiltin("builtin:fence", {160, 120}),
+               gaussians = viewGaussians({160, 120}, false), dimmed = viewGaussians({160, 120}, true);
     return {{"room", room, stereoPair(room.eye, 0.063)},
             {"room, canted", room, headsetEyes(room.eye, glm::radians(5.0))},
             {"fence", fence, stereoPair(fence.eye, 0.12)},
@@ -62,7 +61,7 @@ void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Makin
         chosen_error += twin.tile_kinds[t] == TileKind::kPredicted ? error : 0.0;
         if (same_kind[t] == 0) { exchanged_error += made.tile_kinds[t] != 0 ? -error : error; }
     }
-    const auto other_kinds = std::count(same_kind.begin(), same_kind.end(), 0u);
+    const auto other_kinds = std::ranges::count(same_kind, 0u);
     std::size_t other_classes = 0;
     for (std::size_t i = 0; i < twin.resolved.size(); ++i) {
         if (made.tile_kinds[tileOf(i, full.size_px)] != 0) { continue; }
