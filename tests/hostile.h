@@ -111,8 +111,7 @@ inline void spliceBytes(const std::string& good, int count, const Attempt& attem
 inline void replaceNumbers(const std::string& good, std::size_t reach, const Attempt& attempt) {
     std::vector<std::string> absurd = wordsIn(
         "-1 0 4294967296 9223372036854775807 9223372036854775808 18446744073709551615 -9223372036854775808 "
-        "nan -inf 1e308 1e999 1e-320 "
-        "0x10 \"7\" 99999999999999999999999");
+        "nan -inf 1e308 1e999 1e-320 0x10 \"7\" 99999999999999999999999");
     absurd.emplace_back();
     const auto isNumber = [](char letter) {
         return std::isdigit(static_cast<unsigned char>(letter)) != 0 || letter == '.' || letter == '-';

@@ -17,8 +17,8 @@ namespace binosplat::test {
 inline int (*run_in_fork)(const std::string& arguments, const std::string& environment,
                           const fs::path& folder, const fs::path& outputs) = nullptr;
 
-// An empty folder to run in, removed with the test. Standard output and error are kept outside of it. On
-// Windows, which has no POSIX shell, it is only a folder.
+// An empty folder to run in, removed with the test. On Windows, which has no POSIX shell, it is only a
+// folder.
 struct Workplace {
     fs::path base = makeBase();
     fs::path path = base / "work";
