@@ -99,25 +99,30 @@ SCRIPT(simulated_script, "xr/simulated/script/simulated_script") {
     host.verbs["frames"] = [&](const std::string& expected) {
         std::string frames;
         for (std::uint64_t frame = 0; frame < 10; ++frame) {
-            if (script->writes_pictures && script->frames.contains(frame)) {
-                frames += std::to_string(frame);
-            }
+            const bool is_chosen = script->writes_pictures && script->frames.contains(frame);
+            frames += is_chosen ? std::to_string(frame) : "";
         }
         CHECK(frames == expected);
     };
     runScript(host);
 }
 
-TEST_CASE("every headset's file of the project is read") {
-    std::size_t headsets = 0;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets")) {
-        INFO(entry.path().string());
-        CHECK_NOTHROW((void)Script::parse("headset " + entry.path().filename().string(),
-                                          (entry.path().parent_path() / "a").string()));
-        ++headsets;
+TEST_CASE("every script and headset's file that comes along is one") {
+    std::map<std::string, int> counts;
+    for (const std::string kind : {"simulated", "headsets"}) {
+        const fs::path folder = fs::path(BINOSPLAT_SOURCE_DIR "/configs") / kind;
+        for (const auto& entry : fs::directory_iterator(folder)) {
+            CAPTURE(entry.path().string());
+            CHECK_NOTHROW((void)(kind == "simulated"
+                                     ? Script::load(entry.path())
+                                     : Script::parse("headset " + entry.path().filename().string(),
+                                                     (folder / "a").string())));
+            ++counts[kind];
+        }
     }
-    CHECK(headsets >= 10);
+    CHECK(these((counts["simulated"] >= 2), (counts["headsets"] >= 10)) == these(true, true));
+    const Script walk = Script::load(BINOSPLAT_SOURCE_DIR "/configs/simulated/walk.script");
+    CHECK(walk.eventsIn(-INFINITY, INFINITY).back().kind == ScriptEvent::Kind::kExit);
 }
 
 TEST_CASE("insets lie where a headset's lenses have their middles, while there is no gaze") {
@@ -128,19 +133,6 @@ TEST_CASE("insets lie where a headset's lenses have their middles, while there i
     CHECK(0.5 * (left.left_rad + left.right_rad) == doctest::Approx(0.1));
     CHECK(0.5 * (left.up_rad + left.down_rad) == doctest::Approx(-0.2));
     CHECK(0.5 * (right.left_rad + right.right_rad) == doctest::Approx(-0.1));
-}
-
-TEST_CASE("every script that comes along is one") {
-    const Script script = Script::load(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
-    CHECK(script.eventsIn(-INFINITY, INFINITY).back().kind == ScriptEvent::Kind::kExit);
-    std::size_t count = 0;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated")) {
-        CAPTURE(entry.path().string());
-        CHECK_NOTHROW(Script::load(entry.path()));
-        ++count;
-    }
-    CHECK(count >= 2);
 }
 
 }  // SUITE(simulated_script)
