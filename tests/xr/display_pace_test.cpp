@@ -26,18 +26,14 @@ struct Pace : DisplayPace {
     }
 };
 
-TEST_CASE(
-    "a frame that is displayed late has lost periods, one that comes in time has not, and one that is early "
-    "has some more") {
-    Pace pace;
-    CHECK(pace.after(1.0) == 0.0);
+TEST_CASE_FIXTURE(Pace, "a frame that is displayed late has lost periods, one that is early gains some") {
+    CHECK(after(1.0) == 0.0);
     for (const double periods : {1.0, 3.0, 1.25, 0.75, 1.0}) {
-        CHECK(pace.after(periods) == doctest::Approx(periods - 1.0));
+        CHECK(after(periods) == doctest::Approx(periods - 1.0));
     }
 }
 
-TEST_CASE_FIXTURE(
-    Pace, "what nobody was to see, or what the program itself was too slow for, says nothing of the device") {
+TEST_CASE_FIXTURE(Pace, "frames not to be seen, or too slow by the program, say nothing of the device") {
     after(1.0);
     CHECK(after(1.0, false) == 0.0);
     CHECK(after(4.0) == 0.0);
@@ -46,8 +42,7 @@ TEST_CASE_FIXTURE(
     CHECK(after(2.0) == doctest::Approx(1.0));
 }
 
-TEST_CASE_FIXTURE(
-    Pace, "pauses, another period, a change of the session's state and time that goes back say nothing") {
+TEST_CASE_FIXTURE(Pace, "pauses, another period, another state and time that goes back say nothing") {
     CHECK(after(5.0) == 0.0);
     CHECK(after(500.0) == 0.0);
     constexpr XrDuration kOther = kPeriod * 5 / 4;
@@ -60,8 +55,7 @@ TEST_CASE_FIXTURE(
     CHECK(after(3.0, true, kQuick, 0) == 0.0);
 }
 
-TEST_CASE_FIXTURE(Pace,
-                  "a stated period of several displays is not the display's: what it leaves out was lost") {
+TEST_CASE_FIXTURE(Pace, "a stated period of several displays is not the display's: the rest was lost") {
     after(1.0);
     CHECK(after(2.0, true, kQuick, 2 * kPeriod) == doctest::Approx(1.0));
     CHECK(period() == kPeriod);

@@ -4,9 +4,7 @@
 
 SUITE(images) {
 
-TEST_CASE_FIXTURE(Gpu,
-                  "smaller copies of a picture are the mean of its pixels, down to a single one, in the "
-                  "light that they stand for") {
+TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its light, down to a single pixel") {
     constexpr glm::uvec2 kSize(8, 4);
     constexpr std::uint32_t kLevels = 4;
     REQUIRE(canMakeMips(context(), DeviceImage::kFormat));

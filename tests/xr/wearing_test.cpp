@@ -21,9 +21,7 @@ const auto kStill = [](double t) { return glm::dvec3(0.001 * std::sin(40.0 * t),
 const auto kHead = [](double t) { return glm::dvec3(0.05 * std::sin(t), 0.0, 0.0); };
 const auto kLifted = [](double t) { return glm::dvec3(0.0, -std::clamp(t - 5.0, 0.0, 1.0), 0.0); };
 
-TEST_CASE(
-    "a head that moves is worn at once, a headset that lay still a while after it is lifted, one that lies "
-    "there never") {
+TEST_CASE("a head that moves is worn at once, a headset that is lifted after a while, one that lies never") {
     CHECK(beginsAfter({}, kHead).value_or(9.0) < 1.0);
     CHECK(beginsAfter({}, kLifted).value_or(0.0) == doctest::Approx(7.0).epsilon(0.02));
     CHECK_FALSE(beginsAfter({}, kStill).has_value());
