@@ -4,9 +4,9 @@
 
 SUITE(simulated_automation) {
 
+constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr const char* kXbox = "/interaction_profiles/microsoft/xbox_controller";
 constexpr const char* kEyes = "/interaction_profiles/ext/eye_gaze_interaction";
-constexpr const char* kGazePath = "/user/eyes_ext/input/gaze_ext/pose";
 
 struct AutomationFixture : SessionFixture {
     PFN_xrSetInputDeviceActiveEXT setActive = XR(xrSetInputDeviceActiveEXT);
@@ -14,35 +14,34 @@ struct AutomationFixture : SessionFixture {
     PFN_xrSetInputDeviceStateFloatEXT setFloat = XR(xrSetInputDeviceStateFloatEXT);
     PFN_xrSetInputDeviceStateVector2fEXT setVector = XR(xrSetInputDeviceStateVector2fEXT);
     PFN_xrSetInputDeviceLocationEXT setLocation = XR(xrSetInputDeviceLocationEXT);
-    XrPath left = path("/user/hand/left"), right = path("/user/hand/right"), gamepad = path("/user/gamepad");
+    XrPath gamepad = path("/user/gamepad"), right_trigger = path("/user/hand/right/input/trigger/value"),
+           left_grip = path("/user/hand/left/input/grip/pose");
     XrActionSet set = makeActionSet("walking");
     XrAction jump = makeAction(set, "jump", XR_ACTION_TYPE_BOOLEAN_INPUT, {left, right, gamepad});
     XrAction pull = makeAction(set, "pull", XR_ACTION_TYPE_FLOAT_INPUT, {left, right});
     XrAction stick = makeAction(set, "stick", XR_ACTION_TYPE_VECTOR2F_INPUT);
     XrAction grip = makeAction(set, "grip", XR_ACTION_TYPE_POSE_INPUT, {left, right});
 
-    AutomationFixture()
-        : SessionFixture("size 64 64\nframes none\naxis left trigger 0 0.25\n",
+    explicit AutomationFixture(bool synchronizes = true)
+        : SessionFixture(kQuietScript + "axis left trigger 0 0.25\n",
                          {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}) {
-        REQUIRE(suggest(kTouch, {{jump, path("/user/hand/left/input/x/click")},
-                                 {jump, path("/user/hand/right/input/a/click")},
-                                 {pull, path("/user/hand/left/input/trigger/value")},
-                                 {pull, path("/user/hand/right/input/trigger/value")},
-                                 {stick, path("/user/hand/right/input/thumbstick")},
-                                 {grip, path("/user/hand/left/input/grip/pose")},
-                                 {grip, path("/user/hand/right/input/grip/pose")}}) == XR_SUCCESS);
-        REQUIRE(suggest(kSimple, {{jump, path("/user/hand/left/input/select/click")},
-                                  {jump, path("/user/hand/right/input/select/click")}}) == XR_SUCCESS);
-        REQUIRE(suggest(kXbox, {{jump, path("/user/gamepad/input/a/click")}}) == XR_SUCCESS);
+        const Bindings of_touch{
+            {jump, "/user/hand/left/input/x/click"},       {jump, "/user/hand/right/input/a/click"},
+            {pull, "/user/hand/left/input/trigger/value"}, {pull, "/user/hand/right/input/trigger/value"},
+            {stick, "/user/hand/right/input/thumbstick"},  {grip, "/user/hand/left/input/grip/pose"},
+            {grip, "/user/hand/right/input/grip/pose"}};
+        const Bindings of_simple{{jump, "/user/hand/left/input/select/click"},
+                                 {jump, "/user/hand/right/input/select/click"}};
+        const Bindings of_xbox{{jump, "/user/gamepad/input/a/click"}};
+        checkEach(XR_SUCCESS,
+                  {suggest(kTouch, of_touch), suggest(kSimple, of_simple), suggest(kXbox, of_xbox)});
         attach({set});
         focus();
+        if (synchronizes) { synchronize(); }
+        states();
     }
 
     void synchronize(XrPath hand = XR_NULL_PATH) const { REQUIRE(sync(set, hand) == XR_SUCCESS); }
-    bool isAnnounced() const {
-        XrEventDataBuffer event;
-        return poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED;
-    }
 };
 
 struct Gaze {
@@ -51,21 +50,12 @@ struct Gaze {
     XrTime sampled;
 
     // Degrees from the direction of the head: to the left, and upwards.
-    double yaw() const { return angle(-forward().x); }
-    double pitch() const { return angle(forward().y); }
+    double yaw() const { return std::asin(2 * (q().x * q().z + q().w * q().y)) / kDegree; }
+    double pitch() const { return std::asin(-2 * (q().y * q().z - q().w * q().x)) / kDegree; }
 
 private:
-    static double angle(float sine) { return 180.0 / std::numbers::pi * std::asin(sine); }
-    XrVector3f forward() const {
-        const XrQuaternionf& q = location.pose.orientation;
-        return {-2 * (q.x * q.z + q.w * q.y), -2 * (q.y * q.z - q.w * q.x), -1 + 2 * (q.x * q.x + q.y * q.y)};
-    }
+    const XrQuaternionf& q() const { return location.pose.orientation; }
 };
-
-Extensions withGaze(Extensions extensions) {
-    extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
-    return extensions;
-}
 
 struct GazeFixture : SessionFixture {
     XrActionSet set = makeActionSet("looking");
@@ -73,9 +63,9 @@ struct GazeFixture : SessionFixture {
     XrSpace gaze_space = XR_NULL_HANDLE;
     XrSpace view = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW);
 
-    explicit GazeFixture(const std::string& script, const Extensions& extensions = {})
-        : SessionFixture(kQuietScript + ("rate 100\n" + script), withGaze(extensions)) {
-        REQUIRE(suggest(kEyes, {{look, path(kGazePath)}}) == XR_SUCCESS);
+    explicit GazeFixture(const std::string& script)
+        : SessionFixture(kQuietScript + "rate 100\n" + script, {XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME}) {
+        REQUIRE(suggest(kEyes, {{look, "/user/eyes_ext/input/gaze_ext/pose"}}) == XR_SUCCESS);
         attach({set});
         gaze_space = makeActionSpace(look);
         begin();
@@ -99,7 +89,7 @@ private:
     long frames_ = 0;
 };
 
-// The answer to whether the headset tracks eyes; 7 if there is none.
+// 7: no answer.
 XrBool32 supportsGaze(const InstanceFixture& made) {
     XrSystemEyeGazeInteractionPropertiesEXT eyes{XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, nullptr,
                                                  7};
@@ -107,16 +97,13 @@ XrBool32 supportsGaze(const InstanceFixture& made) {
     return eyes.supportsEyeGazeInteraction;
 }
 
-TEST_CASE_FIXTURE(AutomationFixture,
-                  "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
-    synchronize();
-    CHECK(setFloat(session, right, path("/user/hand/right/input/trigger/value"), 0.75f) == XR_SUCCESS);
+TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next sync, the rest is the script's") {
+    CHECK(setFloat(session, right, right_trigger, 0.75f) == XR_SUCCESS);
     CHECK(number(pull, right).currentState == 0);
     synchronize();
     CHECK(these(number(pull, right).currentState, number(pull, left).currentState) == these(0.75f, 0.25f));
     // A pose is where it was set, in any space.
-    const XrPosef pose{{0, 0, 0, 1}, {1, 2, 3}};
-    CHECK(setLocation(session, left, path("/user/hand/left/input/grip/pose"), local, pose) == XR_SUCCESS);
+    CHECK(setLocation(session, left, left_grip, local, {{0, 0, 0, 1}, {1, 2, 3}}) == XR_SUCCESS);
     synchronize();
     const XrSpace stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
     checkNear(locate(makeActionSpace(grip, left), stage, waitFrame().predictedDisplayTime).pose.position,
@@ -124,17 +111,15 @@ TEST_CASE_FIXTURE(AutomationFixture,
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and are switched off") {
-    synchronize();
-    states();
     CHECK(these(profileOf(left), profileOf(gamepad)) == these(kTouch, "none"));
     CHECK(setActive(session, path(kSimple), left, XR_TRUE) == XR_SUCCESS);
     CHECK(profileOf(left) == kTouch);
     synchronize();
-    CHECK(isAnnounced());
+    CHECK(isProfileAnnounced());
     CHECK(these(profileOf(left), profileOf(right)) == these(kSimple, kTouch));
     CHECK(setBool(session, left, path("/user/hand/left/input/select/click"), XR_TRUE) == XR_SUCCESS);
     synchronize();
-    CHECK_FALSE(isAnnounced());
+    CHECK_FALSE(isProfileAnnounced());
     CHECK(boolean(jump, left).currentState == XR_TRUE);
     CHECK_MESSAGE(number(pull, left).currentState == 0, "the simple controller has no trigger");
     CHECK(setActive(session, path(kSimple), left, XR_FALSE) == XR_SUCCESS);
@@ -142,24 +127,22 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
     CHECK(these(boolean(jump, left).isActive, boolean(jump, right).isActive) == these(XR_FALSE, XR_TRUE));
     // A gamepad exists as soon as the program sets it active.
     CHECK(boolean(jump, gamepad).isActive == XR_FALSE);
-    CHECK(setActive(session, path(kXbox), gamepad, XR_TRUE) == XR_SUCCESS);
-    CHECK(setBool(session, gamepad, path("/user/gamepad/input/a/click"), XR_TRUE) == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {setActive(session, path(kXbox), gamepad, XR_TRUE),
+                           setBool(session, gamepad, path("/user/gamepad/input/a/click"), XR_TRUE)});
     synchronize();
     CHECK(profileOf(gamepad) == kXbox);
     CHECK(boolean(jump, gamepad).currentState == XR_TRUE);
     // A profile for which the program has no bindings.
-    CHECK(setActive(session, path("/interaction_profiles/valve/index_controller"), right, XR_TRUE) ==
-          XR_SUCCESS);
+    const XrPath index = path("/interaction_profiles/valve/index_controller");
+    CHECK(setActive(session, index, right, XR_TRUE) == XR_SUCCESS);
     synchronize();
     CHECK(profileOf(right) == "none");
     CHECK(boolean(jump, right).isActive == XR_FALSE);
 }
 
-TEST_CASE(
-    "a pose of either hand is that of one that is there, stays though it is put down, and goes to one that "
-    "is synchronized") {
-    // Whether the left hand is put down or taken up; which hand is synchronized, if not both; and whose pose
-    // it is then.
+TEST_CASE("an action space of both hands follows one until it is gone and another is synchronized") {
+    // What happens to the left hand; which hand is synchronized, if not both; and whom the space follows
+    // then.
     using Step = std::array<std::string, 3>;
     for (const std::vector<Step>& steps : {std::vector<Step>{{"down", "", "right"}, {"up", "", "right"}},
                                            {{"", "", "left"}, {"down", "", "nobody"}, {"up", "", "left"}},
@@ -168,8 +151,7 @@ TEST_CASE(
                                             {"", "", "right"},
                                             {"down", "left", "nobody"},
                                             {"", "", "right"}}}) {
-        const AutomationFixture made;
-        // For the pose that is bound for both hands, without naming one.
+        const AutomationFixture made(false);
         const XrSpace space = made.makeActionSpace(made.grip);
         for (const auto& [left, synchronized, followed] : steps) {
             INFO(left, " ", synchronized);
@@ -186,33 +168,27 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profile lacks") {
-    synchronize();
-    const XrPath trigger = path("/user/hand/right/input/trigger/value"),
-                 left_grip = path("/user/hand/left/input/grip/pose");
     const auto pullIt = [&](XrPath of, XrPath source) { return setFloat(session, of, source, 1); };
-    checkEach(XR_ERROR_PATH_INVALID, {pullIt(XR_NULL_PATH, trigger), pullIt(right, 123456),
+    checkEach(XR_ERROR_PATH_INVALID, {pullIt(XR_NULL_PATH, right_trigger), pullIt(right, 123456),
                                       setActive(session, XR_NULL_PATH, right, XR_TRUE)});
-    CHECK(setFloat(session, right, trigger, NAN) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(setLocation(session, left, left_grip, local, {{0, 0, 0, 0}, {0, 0, 0}}) == XR_ERROR_POSE_INVALID);
-    checkEach(XR_ERROR_HANDLE_INVALID, {setFloat(XR_NULL_HANDLE, right, trigger, 1),
+    CHECK(setFloat(session, right, right_trigger, NAN) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(setLocation(session, left, left_grip, local, {}) == XR_ERROR_POSE_INVALID);
+    checkEach(XR_ERROR_HANDLE_INVALID, {setFloat(XR_NULL_HANDLE, right, right_trigger, 1),
                                         setLocation(session, left, left_grip, XR_NULL_HANDLE, kIdentity)});
     CHECK(setActive(session, path(kSimple), right, XR_TRUE) == XR_SUCCESS);
     checkEach(XR_ERROR_PATH_UNSUPPORTED,
-              {pullIt(right, trigger), setActive(session, path(kXbox), right, XR_TRUE),
+              {pullIt(right, right_trigger), setActive(session, path(kXbox), right, XR_TRUE),
                setActive(session, path("/interaction_profiles/nobody/nothing"), right, XR_TRUE)});
-    CHECK(setActive(session, path(kTouch), right, XR_TRUE) == XR_SUCCESS);
-    CHECK(pullIt(right, trigger) == XR_SUCCESS);
-    checkEach(XR_ERROR_PATH_UNSUPPORTED,
-              {pullIt(right, path("/user/hand/right/input/nose/value")), pullIt(left, trigger),
-               pullIt(path("/user/treadmill"), trigger), setVector(session, right, trigger, {0, 0}),
-               setLocation(session, left, trigger, local, kIdentity),
-               setLocation(session, right, trigger, local, kIdentity)});
+    checkEach(XR_SUCCESS, {setActive(session, path(kTouch), right, XR_TRUE), pullIt(right, right_trigger)});
+    checkEach(
+        XR_ERROR_PATH_UNSUPPORTED,
+        {pullIt(right, path("/user/hand/right/input/nose/value")), pullIt(left, right_trigger),
+         pullIt(path("/user/treadmill"), right_trigger), setVector(session, right, right_trigger, {0, 0}),
+         setLocation(session, left, right_trigger, local, kIdentity),
+         setLocation(session, right, right_trigger, local, kIdentity)});
 }
 
-TEST_CASE(
-    "the headset says whether it tracks eyes, to whoever enabled the extension; without a tracker, and if "
-    "the "
-    "wearer refuses, the gaze is inactive") {
+TEST_CASE("eye tracking is told to who enabled it; without it, and refused, the gaze is inactive") {
     CHECK(supportsGaze(InstanceFixture()) == 7);
     for (const auto& [script, tracks, is_active] : {std::tuple("", true, true),
                                                     {"eye-tracking on\n", true, true},
@@ -233,8 +209,7 @@ TEST_CASE("the gaze goes where the script says, from between the eyes, with the 
     CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.yaw()) ==
           these(true, (kValid | kTracked), doctest::Approx(0).epsilon(0.001)));
     gaze = made.at(0.2);
-    const double degree = std::numbers::pi / 180.0;
-    CHECK(std::asin(std::sin(gaze.yaw() * degree) / std::cos(5 * degree)) / degree ==
+    CHECK(std::asin(std::sin(gaze.yaw() * kDegree) / std::cos(5 * kDegree)) / kDegree ==
           doctest::Approx(10).epsilon(0.001));
     CHECK(gaze.pitch() == doctest::Approx(-5).epsilon(0.001));
     const XrVector3f& place = gaze.location.pose.position;
@@ -249,8 +224,7 @@ TEST_CASE("the gaze goes where the script says, from between the eyes, with the 
     CHECK(made.profileOf(made.path("/user/eyes_ext")) == kEyes);
 }
 
-TEST_CASE(
-    "a gaze may be lost, found again, and be too poor to rely on; whatever else is located has no sample") {
+TEST_CASE("a gaze may be lost, found again, and be poor; nothing else that is located has a sample") {
     GazeFixture made(
         "at 0.1 gaze off\nat 0.2 gaze degraded\nat 0.3 gaze on\nat 0.4 head off\nat 0.5 head turn-only\nat "
         "0.6 focused off\n");
@@ -279,23 +253,6 @@ TEST_CASE(
     CHECK(sample.time == 0);
     // Out of focus.
     CHECK_FALSE(made.at(0.65).is_active);
-}
-
-TEST_CASE("a program's own test moves the gaze from inside") {
-    GazeFixture made("", {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME});
-    REQUIRE(made.at(0.1).is_active);
-    const XrPath eyes = made.path("/user/eyes_ext"), gaze = made.path(kGazePath);
-    const auto setLocation = made.XR(xrSetInputDeviceLocationEXT);
-    const auto setActive = made.XR(xrSetInputDeviceActiveEXT);
-    // 45 degrees to the left.
-    const XrPosef left{{0, std::sin(0.3926991f), 0, std::cos(0.3926991f)}, {0, 0, 0}};
-    CHECK(setLocation(made.session, eyes, gaze, made.view, left) == XR_SUCCESS);
-    CHECK(setLocation(made.session, eyes, made.path("/user/eyes_ext/input/aim/pose"), made.view, left) ==
-          XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(made.at(0.2).yaw() == doctest::Approx(45).epsilon(0.001));
-    CHECK(setActive(made.session, made.path(kEyes), eyes, XR_FALSE) == XR_SUCCESS);
-    CHECK_FALSE(made.at(0.3).is_active);
-    CHECK(setActive(made.session, made.path(kSimple), eyes, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
 }
 
 }  // SUITE(simulated_automation)

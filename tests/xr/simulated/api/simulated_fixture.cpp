@@ -1,6 +1,8 @@
 // The programs' instances, Vulkan devices, sessions and frames, and the messages of Vulkan's validation.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
+#include <fmt/ranges.h>
+
 #include <unistd.h>
 
 namespace binosplat::test {
@@ -15,13 +17,16 @@ VkBool32 keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessage
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::vector<std::string>& messages) {
-    VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-    info.messageSeverity =
+    constexpr auto kSevere =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
-    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    info.pfnUserCallback = keepMessage;
-    info.pUserData = &messages;
-    return info;
+    return {VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr,     0,        kSevere,
+            VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,          keepMessage, &messages};
+}
+
+template <std::size_t size>
+void setText(char (&destination)[size], const std::string& text) {
+    REQUIRE(text.size() < size);
+    std::strcpy(destination, text.c_str());
 }
 
 VulkanDevice& sharedDevice(const InstanceFixture& runtime) {
@@ -49,9 +54,30 @@ Headset::~Headset() {
 
 std::vector<nlohmann::json> Headset::logged() const {
     std::vector<nlohmann::json> lines;
-    std::ifstream log(written / "frames.jsonl");
-    for (std::string line; std::getline(log, line);) { lines.push_back(nlohmann::json::parse(line)); }
+    for (const std::string& line : linesIn(textIn(written / "frames.jsonl"))) {
+        lines.push_back(nlohmann::json::parse(line));
+    }
     return lines;
+}
+
+std::string InstanceFixture::states() const {
+    static constexpr std::array kNames{"UNKNOWN", "IDLE",     "READY",        "SYNCHRONIZED", "VISIBLE",
+                                       "FOCUSED", "STOPPING", "LOSS_PENDING", "EXITING"};
+    std::vector<std::string> names;
+    for (const auto& event :
+         events<XrEventDataSessionStateChanged>(XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)) {
+        names.push_back(kNames.at(static_cast<std::size_t>(event.state)));
+    }
+    return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string InstanceFixture::rateChanges() const {
+    std::string text;
+    for (const auto& event :
+         events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB)) {
+        text += fmt::format("{} to {}", event.fromDisplayRefreshRate, event.toDisplayRefreshRate);
+    }
+    return text;
 }
 
 XrInstanceCreateInfo instanceInfo(const Extensions& extensions, XrVersion version) {
@@ -169,10 +195,17 @@ XrGraphicsBindingVulkan2KHR VulkanFixture::binding() const {
     return {XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR, nullptr, vulkan, physical_device, device, 0, 0};
 }
 
-VkQueue VulkanFixture::queue() const {
-    VkQueue queue = VK_NULL_HANDLE;
-    vkGetDeviceQueue(device, 0, 0, &queue);
-    return queue;
+std::vector<VkImage> SessionFixture::imagesOf(XrSwapchain swapchain) const {
+    using Image = XrSwapchainImageVulkan2KHR;
+    const auto list = [&](std::uint32_t capacity, std::uint32_t* count, Image* found) {
+        return xrEnumerateSwapchainImages(swapchain, capacity, count,
+                                          reinterpret_cast<XrSwapchainImageBaseHeader*>(found));
+    };
+    std::vector<VkImage> images;
+    for (const Image& one : checkList<Image>(list, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR})) {
+        images.push_back(one.image);
+    }
+    return images;
 }
 
 }  // namespace binosplat::test

@@ -34,14 +34,7 @@ inline constexpr XrSpaceVelocityFlags kMoving =
 
 using Extensions = std::vector<const char*>;
 using Layers = std::vector<const XrCompositionLayerBaseHeader*>;
-using States = std::vector<XrSessionState>;
-
-template <std::size_t size>
-void setText(char (&destination)[size], const std::string& text) {
-    REQUIRE(text.size() < size);
-    std::strcpy(destination, text.c_str());
-}
-
+using Bindings = std::vector<std::pair<XrAction, std::string>>;
 XrInstanceCreateInfo instanceInfo(const Extensions& extensions, XrVersion version = XR_MAKE_VERSION(1, 0, 0));
 // The result of creating an instance, which is destroyed again.
 XrResult tryInstance(const XrInstanceCreateInfo& info,
@@ -67,8 +60,7 @@ const XrCompositionLayerBaseHeader* headerOf(const Layer& layer) {
     return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
 }
 
-// The environment that the runtime reads, and an empty folder for what it writes; both last as long as the
-// test.
+// The environment that the runtime reads, and an empty folder for what it writes.
 class Headset {
 public:
     explicit Headset(const std::string& script);
@@ -87,6 +79,7 @@ struct InstanceFixture : Headset {
     XrInstance instance = XR_NULL_HANDLE;
     XrSystemId system = XR_NULL_SYSTEM_ID;
     XrSession session = XR_NULL_HANDLE;
+    XrPath left = XR_NULL_PATH, right = XR_NULL_PATH;  // hands
 
     explicit InstanceFixture(const std::string& script = kQuietScript, const Extensions& more_extensions = {})
         : InstanceFixture(script, xrGetInstanceProcAddr, instanceInfo(withUsual(more_extensions))) {}
@@ -105,14 +98,12 @@ struct InstanceFixture : Headset {
         PFN_xrVoidFunction found = nullptr;
         return find_function(instance, name, &found) == XR_SUCCESS;
     }
-
-    // What the system says of an extension, for which there is a structure.
+    // What the system says, also in an extension's structure.
     XrSystemProperties systemProperties(void* of_extension = nullptr) const {
         XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, of_extension};
         REQUIRE(XR(xrGetSystemProperties)(instance, system, &properties) == XR_SUCCESS);
         return properties;
     }
-
     XrPath path(const std::string& text) const {
         XrPath path = XR_NULL_PATH;
         REQUIRE(XR(xrStringToPath)(instance, text.c_str(), &path) == XR_SUCCESS);
@@ -129,7 +120,7 @@ struct InstanceFixture : Headset {
         event = {XR_TYPE_EVENT_DATA_BUFFER};
         return XR(xrPollEvent)(instance, &event) == XR_SUCCESS ? event.type : XR_TYPE_UNKNOWN;
     }
-    // All waiting events, and those of one type.
+    // Those of one type among the waiting events, which are all taken.
     template <class Event>
     std::vector<Event> events(XrStructureType type) const {
         std::vector<Event> found;
@@ -139,13 +130,13 @@ struct InstanceFixture : Headset {
         }
         return found;
     }
-    States states() const {
-        States states;
-        for (const auto& event :
-             events<XrEventDataSessionStateChanged>(XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)) {
-            states.push_back(event.state);
-        }
-        return states;
+    // The session's new states: "IDLE READY".
+    std::string states() const;
+    // "100 to 50" for each change of the display's rate.
+    std::string rateChanges() const;
+    bool isProfileAnnounced() const {
+        XrEventDataBuffer event;
+        return poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED;
     }
 
     XrActionSet makeActionSet(const std::string& name, std::uint32_t priority = 0) const {
@@ -164,8 +155,13 @@ struct InstanceFixture : Headset {
         REQUIRE(XR(xrCreateAction)(set, &info, &action) == XR_SUCCESS);
         return action;
     }
-    XrResult suggest(const std::string& profile,
-                     const std::vector<XrActionSuggestedBinding>& bindings) const {
+    XrResult suggest(const std::string& profile, const Bindings& bindings) const {
+        std::vector<XrActionSuggestedBinding> all;
+        for (const auto& [action, binding] : bindings) { all.push_back({action, path(binding)}); }
+        return suggestPaths(profile, all);
+    }
+    XrResult suggestPaths(const std::string& profile,
+                          const std::vector<XrActionSuggestedBinding>& bindings) const {
         const XrInteractionProfileSuggestedBinding info{
             XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, path(profile),
             static_cast<std::uint32_t>(bindings.size()), bindings.data()};
@@ -175,7 +171,7 @@ struct InstanceFixture : Headset {
     XrResult suggest(const std::string& profile, const std::string& binding,
                      XrActionType type = XR_ACTION_TYPE_POSE_INPUT) const {
         const XrActionSet set = makeActionSet("set");
-        const XrResult result = suggest(profile, {{makeAction(set, "action", type), path(binding)}});
+        const XrResult result = suggest(profile, {{makeAction(set, "action", type), binding}});
         REQUIRE(XR(xrDestroyActionSet)(set) == XR_SUCCESS);
         return result;
     }
@@ -286,6 +282,8 @@ protected:
         REQUIRE(XR(xrCreateInstance)(&info, &instance) == XR_SUCCESS);
         const XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
         REQUIRE(XR(xrGetSystem)(instance, &get, &system) == XR_SUCCESS);
+        left = path("/user/hand/left");
+        right = path("/user/hand/right");
     }
 
 private:
@@ -334,7 +332,6 @@ struct VulkanFixture : InstanceFixture {
     ~VulkanFixture();
 
     XrGraphicsBindingVulkan2KHR binding() const;
-    VkQueue queue() const;
 
 private:
     std::unique_ptr<VulkanDevice> own;
@@ -366,32 +363,21 @@ struct SessionFixture : VulkanFixture {
     void focus() const {
         begin();
         for (int i = 0; i < 3; ++i) { frame(); }
-        REQUIRE(states().back() == XR_SESSION_STATE_FOCUSED);
+        REQUIRE(states().ends_with("FOCUSED"));
     }
     XrSwapchain makeSwapchain(const XrSwapchainCreateInfo& info = swapchainInfo()) const {
         XrSwapchain swapchain = XR_NULL_HANDLE;
         REQUIRE(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
         return swapchain;
     }
-    std::vector<VkImage> imagesOf(XrSwapchain swapchain) const {
-        using Image = XrSwapchainImageVulkan2KHR;
-        const auto list = [&](std::uint32_t capacity, std::uint32_t* count, Image* found) {
-            return xrEnumerateSwapchainImages(swapchain, capacity, count,
-                                              reinterpret_cast<XrSwapchainImageBaseHeader*>(found));
-        };
-        std::vector<VkImage> images;
-        for (const Image& one : checkList<Image>(list, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR})) {
-            images.push_back(one.image);
-        }
-        return images;
-    }
+    std::vector<VkImage> imagesOf(XrSwapchain swapchain) const;
     // Returns its index.
     std::uint32_t acquire(XrSwapchain swapchain) const {
         std::uint32_t index = 0;
         REQUIRE(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
         return index;
     }
-    // Acquire and wait, then what is to be done with the image, and release.
+    // Acquire, wait, use and release.
     std::uint32_t turn(
         XrSwapchain swapchain, const std::function<void(VkImage)>& use = [](VkImage) {}) const {
         const std::uint32_t index = acquire(swapchain);
@@ -399,6 +385,12 @@ struct SessionFixture : VulkanFixture {
         use(imagesOf(swapchain).at(index));
         REQUIRE(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
         return index;
+    }
+    // A metre ahead of a space, for both eyes.
+    static XrCompositionLayerQuad quadOf(XrSpace space, const XrSwapchainSubImage& image,
+                                         const XrExtent2Df& size) {
+        return {XR_TYPE_COMPOSITION_LAYER_QUAD, nullptr, 0, space, XR_EYE_VISIBILITY_BOTH, image,
+                {{0, 0, 0, 1}, {0, 0, -1}},     size};
     }
 };
 

@@ -17,7 +17,6 @@ const std::string kScript = kQuietScript +
                             "at 1 controller right off\n";
 
 struct InputFixture : SessionFixture {
-    XrPath left = path("/user/hand/left"), right = path("/user/hand/right");
     XrActionSet set = makeActionSet("walking");
     XrAction click = makeAction(set, "jump", kBoolean);
     XrAction pull = makeAction(set, "pull", XR_ACTION_TYPE_FLOAT_INPUT, {left, right});
@@ -26,25 +25,21 @@ struct InputFixture : SessionFixture {
     XrAction shake = makeAction(set, "shake", XR_ACTION_TYPE_VIBRATION_OUTPUT, {left, right});
 
     InputFixture() : SessionFixture(kScript) {
-        const std::vector<XrActionSuggestedBinding> bindings{
-            {click, path("/user/hand/right/input/a/click")},
-            {pull, path("/user/hand/left/input/trigger/value")},
-            {pull, path("/user/hand/right/input/trigger/value")},
-            {stick, path("/user/hand/right/input/thumbstick")},
-            {grip, path("/user/hand/left/input/grip/pose")},
-            {grip, path("/user/hand/right/input/grip/pose")},
-            {shake, path("/user/hand/left/output/haptic")},
-            {shake, path("/user/hand/right/output/haptic")},
-        };
-        REQUIRE(suggest(kTouch, bindings) == XR_SUCCESS);
+        REQUIRE(suggest(kTouch, {{click, "/user/hand/right/input/a/click"},
+                                 {pull, "/user/hand/left/input/trigger/value"},
+                                 {pull, "/user/hand/right/input/trigger/value"},
+                                 {stick, "/user/hand/right/input/thumbstick"},
+                                 {grip, "/user/hand/left/input/grip/pose"},
+                                 {grip, "/user/hand/right/input/grip/pose"},
+                                 {shake, "/user/hand/left/output/haptic"},
+                                 {shake, "/user/hand/right/output/haptic"}}) == XR_SUCCESS);
     }
 
     void start() const {
         attach({set});
         focus();
     }
-    // Runs frames up to the one shown at n/10 seconds, and returns the controllers' state then; the first
-    // three brought the session to FOCUSED.
+    // Runs frames up to the one shown at n/10 seconds; the first three brought the session to FOCUSED.
     void runTo(int n) {
         for (; shown < n; ++shown) { frame(); }
         REQUIRE(sync(set) == XR_SUCCESS);
@@ -54,9 +49,7 @@ private:
     int shown = 2;
 };
 
-TEST_CASE_FIXTURE(
-    InstanceFixture,
-    "an action set has two names of its own, an action has two in its set, a type and known hands") {
+TEST_CASE_FIXTURE(InstanceFixture, "sets have two names of their own, actions two in their set and a type") {
     XrActionSetCreateInfo set_info = actionSetInfo("walking", "Walking");
     XrActionCreateInfo info = actionInfo("walking", "Walking");
     XrActionSet set = XR_NULL_HANDLE, other_set = XR_NULL_HANDLE;
@@ -86,10 +79,9 @@ TEST_CASE_FIXTURE(
     CHECK(xrDestroyAction(action) == XR_ERROR_HANDLE_INVALID);
     checkArguments(xrCreateActionSet, instance, &set_info, &set);
     std::ranges::fill(set_info.actionSetName, 'a');
-    XrActionSet endless = XR_NULL_HANDLE;
-    CHECK(xrCreateActionSet(instance, &set_info, &endless) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(xrCreateActionSet(instance, &set_info, &other_set) == XR_ERROR_VALIDATION_FAILURE);
     info = actionInfo("roll", "Roll", XR_ACTION_TYPE_FLOAT_INPUT);
-    XrPath paths[2] = {path("/user/hand/left"), path("/user/gamepad")};
+    XrPath paths[2] = {left, path("/user/gamepad")};
     info.countSubactionPaths = 2;
     info.subactionPaths = paths;
     const auto makeForHands = [&] { return xrCreateAction(set, &info, &other); };
@@ -104,20 +96,19 @@ TEST_CASE_FIXTURE(
     CHECK(xrDestroyAction(other) == XR_ERROR_HANDLE_INVALID);
 }
 
-TEST_CASE_FIXTURE(SessionFixture,
-                  "suggestions are whole, action sets are attached once, and are fixed from then on") {
+TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, sets are attached once and fixed from then on") {
     const XrActionSet set = makeActionSet("walking"), left_out = makeActionSet("running");
     const XrAction action = makeAction(set, "jump", kBoolean), other = makeAction(left_out, "jump", kBoolean);
-    const XrPath left = path("/user/hand/left"), click = path("/user/hand/left/input/select/click");
-    CHECK(suggest(kSimple, std::vector<XrActionSuggestedBinding>{}) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(suggest(kSimple, {{XR_NULL_HANDLE, click}}) == XR_ERROR_HANDLE_INVALID);
-    checkEach(XR_ERROR_PATH_INVALID,
-              {suggest(kSimple, {{action, XR_NULL_PATH}}), suggest(kSimple, {{action, 123'456}})});
-    CHECK(suggest("/user/hand/left", {{action, click}}) == XR_ERROR_PATH_UNSUPPORTED);
-    const XrActionSuggestedBinding binding{action, click};
+    const std::string click = "/user/hand/left/input/select/click";
+    XrActionSuggestedBinding binding{action, path(click)};
     XrInteractionProfileSuggestedBinding suggestion{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr,
-                                                    XR_NULL_PATH, 1, &binding};
-    CHECK(xrSuggestInteractionProfileBindings(instance, &suggestion) == XR_ERROR_PATH_INVALID);
+                                                    path(kSimple), 1, &binding};
+    const auto suggestIt = [&] { return xrSuggestInteractionProfileBindings(instance, &suggestion); };
+    CHECK(with(suggestion.countSuggestedBindings, 0, suggestIt) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(with(binding.action, XR_NULL_HANDLE, suggestIt) == XR_ERROR_HANDLE_INVALID);
+    checkChanges(suggestIt, XR_ERROR_PATH_INVALID, to(binding.binding, XR_NULL_PATH),
+                 to(binding.binding, 123'456), to(suggestion.interactionProfile, XR_NULL_PATH));
+    CHECK(with(suggestion.interactionProfile, left, suggestIt) == XR_ERROR_PATH_UNSUPPORTED);
     checkArguments(xrSuggestInteractionProfileBindings, instance, &suggestion);
 
     XrActionStateBoolean state{XR_TYPE_ACTION_STATE_BOOLEAN};
@@ -153,20 +144,22 @@ TEST_CASE_FIXTURE(SessionFixture,
     CHECK(xrGetCurrentInteractionProfile(session, XR_NULL_PATH, &profile) == XR_ERROR_PATH_INVALID);
 }
 
-TEST_CASE_FIXTURE(
-    InputFixture,
-    "a profile is in use from the first sync in focus on, and announced; states are got by type and hand") {
+TEST_CASE_FIXTURE(InputFixture, "a profile is in use, and announced, from the first sync in focus on") {
     attach({set});
     CHECK(sync(set) == XR_SESSION_NOT_FOCUSED);
     CHECK(profileOf(left) == "none");
     focus();
     CHECK(sync(set) == XR_SUCCESS);
     CHECK(these(profileOf(left), profileOf(path("/user/gamepad"))) == these(kTouch, "none"));
-    XrEventDataBuffer event;
-    CHECK(poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED);
+    CHECK(isProfileAnnounced());
     CHECK(sync(set) == XR_SUCCESS);
+    XrEventDataBuffer event;
     CHECK(poll(event) == XR_TYPE_UNKNOWN);
+}
 
+TEST_CASE_FIXTURE(InputFixture, "states are got by type and hand, and sources have names") {
+    start();
+    REQUIRE(sync(set) == XR_SUCCESS);
     XrActionStateBoolean state{XR_TYPE_ACTION_STATE_BOOLEAN};
     XrActionStateFloat number{XR_TYPE_ACTION_STATE_FLOAT};
     XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, pull, XR_NULL_PATH};
@@ -200,9 +193,7 @@ TEST_CASE_FIXTURE(
     CHECK(with(named.sourcePath, XR_NULL_PATH, getName) == XR_ERROR_PATH_INVALID);
 }
 
-TEST_CASE_FIXTURE(
-    InputFixture,
-    "a button is pressed at the script's times, seen at syncs; of two hands the stronger counts, or one") {
+TEST_CASE_FIXTURE(InputFixture, "presses are the script's, seen at syncs; of two hands the stronger counts") {
     start();
     runTo(4);
     CHECK(these(boolean(click).isActive, boolean(click).currentState, boolean(click).changedSinceLastSync) ==
@@ -237,9 +228,7 @@ TEST_CASE_FIXTURE(
     checkArguments(xrSyncActions, session, &nothing);
 }
 
-TEST_CASE_FIXTURE(
-    InputFixture,
-    "action spaces are made of pose actions, and move with their hands, also once the action is gone") {
+TEST_CASE_FIXTURE(InputFixture, "spaces of poses move with their hands, also once the action is gone") {
     XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, left, kIdentity};
     XrSpace made = XR_NULL_HANDLE;
     const auto make = [&] { return xrCreateActionSpace(session, &info, &made); };
@@ -288,9 +277,9 @@ TEST_CASE_FIXTURE(
 TEST_CASE_FIXTURE(InputFixture, "a set of higher priority takes the controls that it uses") {
     const XrActionSet menu = makeActionSet("menu", 5);
     const XrAction choose = makeAction(menu, "choose", kBoolean);
-    REQUIRE(suggest(kTouch, {{choose, path("/user/hand/right/input/trigger/touch")},
-                             {pull, path("/user/hand/right/input/trigger/value")},
-                             {click, path("/user/hand/right/input/a/click")}}) == XR_SUCCESS);
+    REQUIRE(suggest(kTouch, {{choose, "/user/hand/right/input/trigger/touch"},
+                             {pull, "/user/hand/right/input/trigger/value"},
+                             {click, "/user/hand/right/input/a/click"}}) == XR_SUCCESS);
     attach({set, menu});
     focus();
     REQUIRE(sync({{set, XR_NULL_PATH}, {menu, XR_NULL_PATH}}) == XR_SUCCESS);
@@ -301,11 +290,9 @@ TEST_CASE_FIXTURE(InputFixture, "a set of higher priority takes the controls tha
 }
 
 TEST_CASE_FIXTURE(InputFixture,
-                  "haptics go to haptic actions, in focus; the log tells how strong one is, and one of no "
-                  "strength is none") {
+                  "haptics go to haptic actions, in focus, and to the log, if not of strength 0") {
     attach({set});
-    XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION,
-                                XR_FREQUENCY_UNSPECIFIED, 0.5f};
+    XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION, 0, 0.5f};
     const auto* const feedback = reinterpret_cast<const XrHapticBaseHeader*>(&vibration);
     XrHapticActionInfo info{XR_TYPE_HAPTIC_ACTION_INFO, nullptr, shake, left};
     const auto apply = [&] { return xrApplyHapticFeedback(session, &info, feedback); };
@@ -341,13 +328,11 @@ struct PressFixture : SessionFixture {
 
     PressFixture(bool knows_touch, const std::string& script)
         : SessionFixture(kQuietScript + "rate 10\npress left trigger 0 2\n" + script) {
-        REQUIRE(suggest(kSimple, {{by_select, path("/user/hand/left/input/select")},
-                                  {as_float, path("/user/hand/left/input/select")},
-                                  {as_stick, path("/user/hand/left/input/select/click")}}) == XR_SUCCESS);
-        if (knows_touch) {
-            const XrPath trigger = path("/user/hand/left/input/trigger/value");
-            REQUIRE(suggest(kTouch, {{by_trigger, trigger}}) == XR_SUCCESS);
-        }
+        REQUIRE(suggest(kSimple, {{by_select, "/user/hand/left/input/select"},
+                                  {as_float, "/user/hand/left/input/select"},
+                                  {as_stick, "/user/hand/left/input/select/click"}}) == XR_SUCCESS);
+        const Bindings of_touch{{by_trigger, "/user/hand/left/input/trigger/value"}};
+        if (knows_touch) { REQUIRE(suggest(kTouch, of_touch) == XR_SUCCESS); }
         attach({set});
         focus();
     }
@@ -358,25 +343,20 @@ TEST_CASE("a script that moves what the program's controllers lack is refused wh
     for (int i = 0; i < 2; ++i) { CHECK(made.sync(made.set) == XR_ERROR_RUNTIME_FAILURE); }
 }
 
-TEST_CASE(
-    "other controllers taken up are announced and read, those that the program does not know are the first "
-    "that it does; a button is bound to a number, but not to a stick") {
+TEST_CASE("controllers taken up are announced and read; those that the program does not know are its first") {
     const PressFixture made(true,
                             "press left select 0 2\nat 0.5 profile khr/simple_controller\n"
                             "at 0.7 profile valve/index_controller\n");
-    const char* in_use = nullptr;
     for (int shown = 2; shown < 9; ++shown) {
         CAPTURE(shown);
-        const char* const expected = shown == 5 || shown == 6 ? kSimple : kTouch;
+        const bool is_simple = shown == 5 || shown == 6;
         REQUIRE(made.sync(made.set) == XR_SUCCESS);
-        CHECK(made.profileOf(made.path("/user/hand/left")) == expected);
-        XrEventDataBuffer event;
-        CHECK((made.poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED) == (expected != in_use));
-        const bool is_simple = expected == kSimple;
+        CHECK(made.profileOf(made.left) == (is_simple ? kSimple : kTouch));
+        CHECK(made.isProfileAnnounced() == (shown == 2 || shown == 5 || shown == 7));
+        // A button is bound to a number, but not to a stick.
         CHECK(these(made.number(made.by_trigger).currentState, made.boolean(made.by_select).currentState,
-                    made.number(made.as_float).currentState, made.vector(made.as_stick).isActive) ==
-              these(is_simple ? 0 : 1, is_simple ? 1 : 0, is_simple ? 1 : 0, XR_FALSE));
-        in_use = expected;
+                    made.number(made.as_float).currentState,
+                    made.vector(made.as_stick).isActive) == these(!is_simple, is_simple, is_simple, false));
         made.frame();
     }
 }

@@ -2,7 +2,6 @@
 // that the wearer sees them.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
-#include "xr/simulated/compose/picture_file.h"
 
 SUITE(simulated_inset) {
 
@@ -40,8 +39,8 @@ void checkAngles(const XrView& view, const std::array<double, 4>& degrees) {
     }
 }
 
-struct QuadFixture : SessionFixture {
-    explicit QuadFixture(const std::string& script) : SessionFixture("size 64 64\n" + script, kQuad) {
+struct QuadFixture : Wearer {
+    explicit QuadFixture(const std::string& script) : Wearer("size 64 64\n" + script, kQuad) {
         begin(kInset);
     }
 
@@ -68,18 +67,12 @@ struct QuadFixture : SessionFixture {
 
 // Pictures of one colour: red for the context views, green for the left inset and blue for the right one.
 struct PaintedFixture : QuadFixture {
-    Painter painter{*this};
-    std::array<XrSwapchain, 3> swapchains{};
+    std::array<XrSwapchain, 3> swapchains{plain(16, {255, 0, 0, 255}), plain(16, {0, 255, 0, 255}),
+                                          plain(16, {0, 0, 255, 255})};
     std::array<XrCompositionLayerProjectionView, 4> views{};
     XrCompositionLayerProjection layer = projectionOf(local, views);
 
-    explicit PaintedFixture(const std::string& script) : QuadFixture(script) {
-        constexpr std::array<std::uint32_t, 3> kColours{0xff0000ff, 0xff00ff00, 0xffff0000};
-        for (std::size_t i = 0; i < 3; ++i) {
-            swapchains[i] = painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 16, 16);
-            painter.paint(swapchains[i], 16, 16, std::vector<std::uint32_t>(256, kColours[i]));
-        }
-    }
+    using QuadFixture::QuadFixture;
     // In the place of the eyes at a frame's time.
     XrResult showViews(XrTime time, std::uint32_t view_count = 4) {
         const Views located = locateViews(time);
@@ -93,22 +86,19 @@ struct PaintedFixture : QuadFixture {
 };
 
 char colourAt(const simulated::RgbPicture& picture, std::uint32_t x, std::uint32_t y) {
-    const std::uint8_t* const pixel = picture.bytes.data() + 3 * (std::size_t{y} * picture.size_px.x + x);
-    const auto is = [&](int r, int g, int b) { return pixel[0] == r && pixel[1] == g && pixel[2] == b; };
-    return is(255, 0, 0) ? 'r' : is(0, 255, 0) ? 'g' : is(0, 0, 255) ? 'b' : '?';
+    const std::map<Rgb, char> names{{{255, 0, 0}, 'r'}, {{0, 255, 0}, 'g'}, {{0, 0, 255}, 'b'}};
+    const auto found = names.find(at(picture, x, y));
+    return found == names.end() ? '?' : found->second;
 }
 
-TEST_CASE(
-    "the inset is listed where the program may name it, one of 1.1 also of a headset of two views; the "
-    "script may take it away") {
+TEST_CASE("the inset is listed where the program may name it, unless the script takes it away") {
     using Types = std::vector<XrViewConfigurationType>;
     const std::string without = "extension XR_VARJO_quad_views off\n";
     for (const auto& [version, extensions, script, expected, answer] :
          {std::tuple(k1_0, Extensions{}, kQuietScript, Types{kStereo}, XR_ERROR_VALIDATION_FAILURE),
-          std::tuple(k1_0, kQuad, kQuietScript, Types{kStereo, kInset}, XR_SUCCESS),
-          std::tuple(k1_1, Extensions{}, kQuietScript, Types{kStereo, kInset}, XR_SUCCESS),
-          std::tuple(k1_1, Extensions{}, without, Types{kStereo},
-                     XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED)}) {
+          {k1_0, kQuad, kQuietScript, Types{kStereo, kInset}, XR_SUCCESS},
+          {k1_1, {}, kQuietScript, Types{kStereo, kInset}, XR_SUCCESS},
+          {k1_1, {}, without, Types{kStereo}, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED}}) {
         const DirectInstance made(version, extensions, script);
         CHECK(checkListOf(XrViewConfigurationType{}, made.XR(xrEnumerateViewConfigurations), made.instance,
                           made.system) == expected);
@@ -118,9 +108,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "contexts are of half the pixels, insets of as many a degree as the whole view would be, or as the "
-    "script says") {
+TEST_CASE("contexts have half the pixels, insets as many a degree as the whole view, or as the script says") {
     // 64 tan 20 / tan 45 is 23.3.
     CHECK(sizesOf("size 64 64") == "32x32 32x32 24x24 24x24");
     CHECK(sizesOf("size 64 64\ninset 10") == "32x32 32x32 12x12 12x12");
@@ -151,28 +139,24 @@ TEST_CASE("insets lie about the gaze, with the poses of their eyes, and stay in 
     // If a view is narrower than its inset, the inset fills it.
     checkAngles(firstOf("eye left angles -15 10 45 -45\n")[2], {-15, 10, 20, -20});
     // Without a good gaze, insets lie around the middle of the lens.
-    checkAngles(firstOf("gaze 0 15 0\neye-tracking off\n")[2], {-20, 20, 20, -20});
     const QuadFixture lost("frames none\nrate 100\ngaze 0 15 0\nat 0.01 gaze degraded\n");
     checkAngles(lost.locateNext()[2], {-35, 5, 20, -20});
     checkAngles(lost.locateNext()[2], {-20, 20, 20, -20});
 }
 
-TEST_CASE(
-    "insets follow the gaze only where a program asks for that, with the extension, and the headset says "
-    "whether they can") {
-    {
-        const QuadFixture made("frames none\ngaze 0 15 0\n");
-        const XrTime time = made.frame().predictedDisplayTime;
-        checkAngles(made.locateViews(time, false)[2], {-20, 20, 20, -20});
-        checkAngles(made.locateViews(time, true)[2], {-35, 5, 20, -20});
-    }
-    for (const auto& [lines, expected] :
-         {std::pair("", XR_TRUE), std::pair("eye-tracking off\n", XR_FALSE)}) {
-        const InstanceFixture told(std::string(kQuietScript) + lines, kQuad);
+TEST_CASE("insets follow the gaze where a program asks for that, and the headset says whether they can") {
+    for (const bool tracks : {true, false}) {
+        const QuadFixture made(std::string("frames none\ngaze 0 15 0\n") +
+                               (tracks ? "" : "eye-tracking off\n"));
         XrSystemFoveatedRenderingPropertiesVARJO insets{XR_TYPE_SYSTEM_FOVEATED_RENDERING_PROPERTIES_VARJO,
                                                         nullptr, 7};
-        told.systemProperties(&insets);
-        CHECK(insets.supportsFoveatedRendering == expected);
+        made.systemProperties(&insets);
+        CHECK(insets.supportsFoveatedRendering == XrBool32{tracks});
+        // Without a good gaze, insets lie around the middle of the lens.
+        const std::array<double, 4> middle{-20, 20, 20, -20}, aside{-35, 5, 20, -20};
+        const XrTime time = made.frame().predictedDisplayTime;
+        checkAngles(made.locateViews(time, false)[2], middle);
+        checkAngles(made.locateViews(time, true)[2], tracks ? aside : middle);
     }
 }
 
@@ -189,14 +173,12 @@ TEST_CASE("a session draws as many views as it began with; the log says where th
     }
 }
 
-TEST_CASE(
-    "a session in stereo draws no insets, though the headset has them, and none begins with what the program "
-    "may not name") {
-    {
-        const SessionFixture plain;
-        const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kInset};
-        CHECK(xrBeginSession(plain.session, &info) == XR_ERROR_VALIDATION_FAILURE);
-    }
+TEST_CASE_FIXTURE(SessionFixture, "no session begins with insets that the program may not name") {
+    const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kInset};
+    CHECK(xrBeginSession(session, &info) == XR_ERROR_VALIDATION_FAILURE);
+}
+
+TEST_CASE("a session in stereo draws no insets, though the headset has them") {
     const SessionFixture stereo(kQuietScript, kQuad);
     stereo.begin();
     const XrSwapchain colour = stereo.makeSwapchain();
@@ -215,7 +197,7 @@ TEST_CASE("the wearer sees each inset in the place of what its view shows there"
     // tan 20 is 0.364 of the 32 pixels on either side: 20.4 to 43.6.
     const simulated::RgbPicture ahead = simulated::readPng(painted.written / "frame_000001.png");
     REQUIRE(ahead.size_px == glm::uvec2(128, 64));
-    for (const auto& [first, colour] : {std::pair(0u, 'g'), std::pair(64u, 'b')}) {
+    for (const auto& [first, colour] : {std::pair(0u, 'g'), {64u, 'b'}}) {
         for (std::uint32_t i = 0; i < 64 * 64; ++i) {
             const bool is_inset = i % 64 >= 20 && i % 64 <= 43 && i / 64 >= 20 && i / 64 <= 43;
             REQUIRE(colourAt(ahead, first + i % 64, i / 64) == (is_inset ? colour : 'r'));
@@ -223,8 +205,7 @@ TEST_CASE("the wearer sees each inset in the place of what its view shows there"
     }
     // From 35 degrees to the left to 5 to the right: 9.6 to 34.8.
     const simulated::RgbPicture aside = simulated::readPng(painted.written / "frame_000002.png");
-    for (const auto& [column, colour] :
-         {std::pair(8u, 'r'), std::pair(10u, 'g'), std::pair(34u, 'g'), std::pair(35u, 'r')}) {
+    for (const auto& [column, colour] : {std::pair(8u, 'r'), {10u, 'g'}, {34u, 'g'}, {35u, 'r'}}) {
         CHECK(colourAt(aside, column, 32) == colour);
     }
 }

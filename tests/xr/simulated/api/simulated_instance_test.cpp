@@ -32,10 +32,9 @@ XrResult tryScript(const std::string& script, const Extensions& extensions = {})
     return tryInstance(instanceInfo(extensions));
 }
 
-TEST_CASE(
-    "the library shows one function, which negotiates version 1, and 1.1 or what its loader can do with") {
+TEST_CASE("the library shows one function, which negotiates an interface and a version with its loader") {
     const Direct runtime;
-    // A symbol that is found belongs to another library, on which this one depends.
+    // What is found belongs to another library, on which this one depends.
     for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) {
         Dl_info owner{};
         void* const found = dlsym(runtime.library, name);
@@ -57,11 +56,11 @@ TEST_CASE(
     // The loader itself answers for layers; a loader that asks the runtime gets none.
     PFN_xrVoidFunction found = nullptr;
     REQUIRE(runtime.get(XR_NULL_HANDLE, "xrEnumerateApiLayerProperties", &found) == XR_SUCCESS);
-    const auto enumerateLayers = reinterpret_cast<PFN_xrEnumerateApiLayerProperties>(found);
+    const auto listLayers = reinterpret_cast<PFN_xrEnumerateApiLayerProperties>(found);
     std::uint32_t count = 9;
-    CHECK(enumerateLayers(0, &count, nullptr) == XR_SUCCESS);
+    CHECK(listLayers(0, &count, nullptr) == XR_SUCCESS);
     CHECK(count == 0);
-    CHECK(enumerateLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(listLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     // A loader that names layers, whatever they are called, has them.
     const Headset headset(kQuietScript);
     const char* const name = "XR_APILAYER_nobody_nothing";
@@ -72,17 +71,13 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "extensions are listed in two calls, and enabled alone, and all, some twice, with a session that draws "
-    "and one that does not") {
+    "extensions are listed, and enabled alone, and all, with a session that draws and one that does not") {
     Extensions all;
-    std::vector<XrExtensionProperties> properties;
-    {
+    const auto list = [](auto... step) {
         const Headset headset(kQuietScript);
-        const auto list = [](auto... step) {
-            return xrEnumerateInstanceExtensionProperties(nullptr, step...);
-        };
-        properties = checkList<XrExtensionProperties>(list, {XR_TYPE_EXTENSION_PROPERTIES});
-    }
+        return xrEnumerateInstanceExtensionProperties(nullptr, step...);
+    };
+    const auto properties = checkList<XrExtensionProperties>(list, {XR_TYPE_EXTENSION_PROPERTIES});
     for (const XrExtensionProperties& property : properties) {
         CHECK_MESSAGE(tryScript(kQuietScript, {property.extensionName}) == XR_SUCCESS,
                       std::string(property.extensionName));
@@ -90,7 +85,7 @@ TEST_CASE(
     }
     CHECK(tryScript("extension XR_KHR_visibility_mask off\n", {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME}) ==
           XR_ERROR_EXTENSION_NOT_PRESENT);
-    // The fixture itself enables three of them.
+    // The fixture itself enables three of them, so they stand there twice.
     const SessionFixture made(kQuietScript, all);
     made.focus();
     made.turn(made.makeSwapchain());
@@ -100,9 +95,7 @@ TEST_CASE(
     CHECK(xrCreateSession(made.instance, &info, &headless) == XR_SUCCESS);
 }
 
-TEST_CASE(
-    "instances are of 1.0 and 1.1, whatever the patch; one is refused for what its description lacks, or its "
-    "script") {
+TEST_CASE("instances are of 1.0 and 1.1, and refused for what their description lacks, or their script") {
     {
         const Headset headset(kQuietScript);
         const Direct runtime;
@@ -127,8 +120,7 @@ TEST_CASE(
         CHECK(make() == XR_ERROR_NAME_INVALID);
     }
     CHECK(tryScript(kQuietScript, {"XR_KHR_nothing"}) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    checkEach(XR_ERROR_RUNTIME_FAILURE, {tryScript("profile khr/simple_controller\npress left squeeze 0 1\n"),
-                                         tryScript("hed 0 position 0 0 0\n")});
+    CHECK(tryScript("profile khr/simple_controller\npress left squeeze 0 1\n") == XR_ERROR_RUNTIME_FAILURE);
 }
 
 TEST_CASE("the environment is read again for each instance") {
@@ -147,8 +139,7 @@ TEST_CASE("the environment is read again for each instance") {
     for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK"}) { unsetenv(name); }
 }
 
-TEST_CASE(
-    "refusals are explained, counted where they come again, and not those of the loader's own questions") {
+TEST_CASE("refusals are explained, and counted where they come again, but not the loader's own questions") {
     const std::string refused = explainedBy([] {
         const Headset headset(kQuietScript);
         const Direct runtime;
@@ -183,8 +174,8 @@ TEST_CASE(
                                       {"/a/../b", " (7 times in all)"},
                                       {"no slash", " (125 times in all)"}}) {
         expected += fmt::format(
-            "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '{}' is not a well-formed "
-            "path{}\n",
+            "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '{}' is not "
+            "a well-formed path{}\n",
             path, times);
     }
     CHECK(repeated == expected);
@@ -205,22 +196,19 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
     CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_SUCCESS);
     CHECK_FALSE(std::filesystem::exists(picture));
     CHECK(std::filesystem::file_size(log) == 0);
-    // A log that belongs to someone else, here behind a link.
-    std::ofstream(headset.folder / "victim") << "keep me";
-    std::filesystem::remove(log);
-    std::filesystem::create_symlink(headset.folder / "victim", log);
+    std::ofstream(log) << "somebody else's";
     const std::string explained =
         explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
     CHECK(explained == "simulated runtime: xrCreateInstance: " + log.string() +
                            ": not what an earlier run left here, must be moved elsewhere\n");
-    CHECK(std::filesystem::file_size(headset.folder / "victim") == 7);
+    CHECK(textIn(log) == "somebody else's");
 }
 
 TEST_CASE("functions are found by name, those of extensions and of 1.1 where these are enabled") {
     for (const auto& [version, extensions, of_1_1, of_extension] :
          {std::tuple(k1_0, Extensions{}, false, false),
-          std::tuple(k1_0, Extensions{XR_KHR_LOCATE_SPACES_EXTENSION_NAME}, false, true),
-          std::tuple(k1_1, Extensions{}, true, false)}) {
+          {k1_0, {XR_KHR_LOCATE_SPACES_EXTENSION_NAME}, false, true},
+          {k1_1, {}, true, false}}) {
         const DirectInstance made(version, extensions);
         CHECK(these(made.has("xrWaitFrame"), made.has("xrLocateSpaces"), made.has("xrLocateSpacesKHR")) ==
               these(true, of_1_1, of_extension));
@@ -251,29 +239,29 @@ TEST_CASE_FIXTURE(InstanceFixture, "an instance says what it runs on, has events
 
 TEST_CASE("values have names, also those of 1.1") {
     const DirectInstance made(k1_1, {});
-    char text[XR_MAX_RESULT_STRING_SIZE];
-    for (const auto& [value, name] :
-         {std::pair(XR_ERROR_LAYER_INVALID, "XR_ERROR_LAYER_INVALID"),
-          std::pair(static_cast<XrResult>(-31415), "XR_UNKNOWN_FAILURE_-31415"),
-          std::pair(static_cast<XrResult>(31415), "XR_UNKNOWN_SUCCESS_31415"),
-          std::pair(static_cast<XrResult>(-1000710001), "XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED"),
-          std::pair(static_cast<XrResult>(-1000710000), "XR_ERROR_PERMISSION_INSUFFICIENT")}) {
-        CHECK(made.XR(xrResultToString)(made.instance, value, text) == XR_SUCCESS);
-        CHECK(std::string(text) == name);
+    const auto nameOf = [&](auto toString, auto value) {
+        char text[XR_MAX_RESULT_STRING_SIZE];
+        CHECK(toString(made.instance, value, text) == XR_SUCCESS);
+        return std::string(text);
+    };
+    for (const auto& [value, name] : {std::pair(int{XR_ERROR_LAYER_INVALID}, "XR_ERROR_LAYER_INVALID"),
+                                      {-31415, "XR_UNKNOWN_FAILURE_-31415"},
+                                      {31415, "XR_UNKNOWN_SUCCESS_31415"},
+                                      {-1000710001, "XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED"},
+                                      {-1000710000, "XR_ERROR_PERMISSION_INSUFFICIENT"}}) {
+        CHECK(nameOf(made.XR(xrResultToString), static_cast<XrResult>(value)) == name);
     }
     CHECK(made.XR(xrResultToString)(made.instance, XR_SUCCESS, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     for (const auto& [value, name] :
-         {std::pair(XR_TYPE_SWAPCHAIN_CREATE_INFO, "XR_TYPE_SWAPCHAIN_CREATE_INFO"),
-          std::pair(static_cast<XrStructureType>(31415), "XR_UNKNOWN_STRUCTURE_TYPE_31415"),
-          std::pair(static_cast<XrStructureType>(1000471001), "XR_TYPE_SPACE_LOCATIONS")}) {
-        CHECK(made.XR(xrStructureTypeToString)(made.instance, value, text) == XR_SUCCESS);
-        CHECK(std::string(text) == name);
+         {std::pair(int{XR_TYPE_SWAPCHAIN_CREATE_INFO}, "XR_TYPE_SWAPCHAIN_CREATE_INFO"),
+          {31415, "XR_UNKNOWN_STRUCTURE_TYPE_31415"},
+          {1000471001, "XR_TYPE_SPACE_LOCATIONS"}}) {
+        CHECK(nameOf(made.XR(xrStructureTypeToString), static_cast<XrStructureType>(value)) == name);
     }
 }
 
-TEST_CASE_FIXTURE(
-    InstanceFixture,
-    "a system is one head-mounted display; a next chain may hold what is unknown, but it must end") {
+TEST_CASE_FIXTURE(InstanceFixture,
+                  "a system is one headset; a next chain may hold what is unknown, but ends") {
     XrSystemGetInfo info{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
     XrSystemId id = XR_NULL_SYSTEM_ID;
     const auto get = [&] { return xrGetSystem(instance, &info, &id); };
@@ -328,11 +316,10 @@ TEST_CASE_FIXTURE(InstanceFixture, "views are two, of the script's size, and opa
 }
 
 TEST_CASE_FIXTURE(InstanceFixture, "paths are the same for the same text, and back, and have a form") {
-    const XrPath hand = path("/user/hand/left");
-    CHECK(hand != XR_NULL_PATH);
-    CHECK(hand == path("/user/hand/left"));
-    CHECK(hand != path("/user/hand/right"));
-    const auto text = checkListOf('\0', xrPathToString, instance, hand);
+    CHECK(left != XR_NULL_PATH);
+    CHECK(left == path("/user/hand/left"));
+    CHECK(left != right);
+    const auto text = checkListOf('\0', xrPathToString, instance, left);
     CHECK(text.size() == 16);
     CHECK(std::string(text.data()) == "/user/hand/left");
     std::uint32_t count = 0;

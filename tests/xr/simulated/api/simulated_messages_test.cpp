@@ -11,27 +11,7 @@ constexpr auto kGeneral = XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
 constexpr const char* kMistake =
     "error validation: XR_ERROR_PATH_FORMAT_INVALID in xrStringToPath: 'no slash' is not a well-formed path";
 
-// "info general: ID in FUNCTION: TEXT, in LABEL, of OBJECT"
-XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageTypeFlagsEXT types,
-              const XrDebugUtilsMessengerCallbackDataEXT* data, void* heard) {
-    const auto textOf = [](const char* text) { return text == nullptr ? "none" : text; };
-    std::string text = fmt::format("{} {}: {} in {}: {}",
-                                   severity == kError  ? "error"
-                                   : severity == kInfo ? "info"
-                                                       : "other",
-                                   types == kValidation ? "validation"
-                                   : types == kGeneral  ? "general"
-                                                        : "other",
-                                   textOf(data->messageId), textOf(data->functionName), data->message);
-    for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) {
-        text += std::string(", in ") + data->sessionLabels[i].labelName;
-    }
-    for (std::uint32_t i = 0; i < data->objectCount; ++i) {
-        text += std::string(", of ") + textOf(data->objects[i].objectName);
-    }
-    static_cast<std::vector<std::string>*>(heard)->push_back(text);
-    return XR_FALSE;
-}
+const char* orNone(const char* text) { return text == nullptr ? "none" : text; }
 
 struct Heard {
     std::vector<std::string> messages;
@@ -39,13 +19,31 @@ struct Heard {
                                             nullptr,
                                             kError | kInfo,
                                             kValidation | kGeneral,
-                                            hear,
+                                            keep,
                                             &messages};
 
     // The only message since the last call.
     std::string take() {
         REQUIRE(messages.size() == 1);
         return std::exchange(messages, {})[0];
+    }
+
+private:
+    // "info general: ID in FUNCTION: TEXT, in LABEL, of OBJECT"
+    static XrBool32 keep(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageTypeFlagsEXT types,
+                         const XrDebugUtilsMessengerCallbackDataEXT* data, void* messages) {
+        std::map<XrFlags64, std::string> severities{{kError, "error"}, {kInfo, "info"}},
+            kinds{{kValidation, "validation"}, {kGeneral, "general"}};
+        std::string text = fmt::format("{} {}: {} in {}: {}", severities[severity], kinds[types],
+                                       orNone(data->messageId), orNone(data->functionName), data->message);
+        for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) {
+            text += fmt::format(", in {}", data->sessionLabels[i].labelName);
+        }
+        for (std::uint32_t i = 0; i < data->objectCount; ++i) {
+            text += fmt::format(", of {}", orNone(data->objects[i].objectName));
+        }
+        static_cast<std::vector<std::string>*>(messages)->push_back(text);
+        return XR_FALSE;
     }
 };
 
@@ -67,8 +65,8 @@ struct MessageFixture : HeadlessSession {
         CHECK(XR(xrStringToPath)(instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
     }
     std::string takeReason() {
-        const std::string message = heard.take(), before = " in xr";
-        return message.substr(message.find(": ", message.find(before)) + 2);
+        const std::string message = heard.take();
+        return message.substr(message.find(": ", message.find(" in xr")) + 2);
     }
 };
 
@@ -76,20 +74,17 @@ XrDebugUtilsLabelEXT label(const char* name) { return {XR_TYPE_DEBUG_UTILS_LABEL
 XrDebugUtilsMessengerCallbackDataEXT hello(const char* function,
                                            std::span<XrDebugUtilsObjectNameInfoEXT> objects,
                                            std::span<XrDebugUtilsLabelEXT> labels) {
-    return {XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
-            nullptr,
-            nullptr,
-            function,
-            "hello",
-            static_cast<std::uint32_t>(objects.size()),
-            objects.data(),
-            static_cast<std::uint32_t>(labels.size()),
-            labels.data()};
+    XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT};
+    data.functionName = function;
+    data.message = "hello";
+    data.objectCount = static_cast<std::uint32_t>(objects.size());
+    data.objects = objects.data();
+    data.sessionLabelCount = static_cast<std::uint32_t>(labels.size());
+    data.sessionLabels = labels.data();
+    return data;
 }
 
-TEST_CASE_FIXTURE(
-    MessageFixture,
-    "a refused call is told to the application's own function, with what was wrong, to which it asked for") {
+TEST_CASE_FIXTURE(MessageFixture, "the application's function is told of refusals, if it asked for them") {
     beMistaken();
     CHECK(heard.take() == kMistake);
     // The loader's own queries are not mistakes.
@@ -117,17 +112,14 @@ TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refuse
     const std::string trigger = "/user/hand/left/input/trigger/", profiles = "/interaction_profiles/";
     for (const auto& [profile, binding, expected] :
          {std::tuple("khr/simple_controller", "value",
-                     "khr/simple_controller has no /user/hand/left/input/trigger/value, suggested for the "
-                     "action action"),
-          std::tuple("oculus/touch_controller", "proximity",
-                     "oculus/touch_controller has no /user/hand/left/input/trigger/proximity without "
-                     "XR_VERSION_1_1, suggested for the "
-                     "action action"),
-          std::tuple("meta/touch_plus_controller", "value",
-                     "meta/touch_plus_controller needs XR_VERSION_1_1"),
-          std::tuple("nobody/nothing", "value", "nobody/nothing is not an interaction profile")}) {
+                     " has no /user/hand/left/input/trigger/value, suggested for the action action"),
+          {"oculus/touch_controller", "proximity",
+           " has no /user/hand/left/input/trigger/proximity without XR_VERSION_1_1, suggested for the action "
+           "action"},
+          {"meta/touch_plus_controller", "value", " needs XR_VERSION_1_1"},
+          {"nobody/nothing", "value", " is not an interaction profile"}}) {
         CHECK(suggest(profiles + profile, trigger + binding) == XR_ERROR_PATH_UNSUPPORTED);
-        CHECK(takeReason() == profiles + expected);
+        CHECK(takeReason() == profiles + profile + expected);
     }
     std::uint32_t count = 0;
     char text[4];
@@ -149,9 +141,7 @@ TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refuse
     CHECK(takeReason() == "0x1234 is not an XrSession that exists");
 }
 
-TEST_CASE_FIXTURE(
-    MessageFixture,
-    "applications submit messages of their own, with the session's labels and the objects' names") {
+TEST_CASE_FIXTURE(MessageFixture, "applications submit messages, with session's labels and objects' names") {
     const auto begin_region = XR(xrSessionBeginDebugUtilsLabelRegionEXT);
     const auto end_region = XR(xrSessionEndDebugUtilsLabelRegionEXT);
     const auto insert = XR(xrSessionInsertDebugUtilsLabelEXT);
@@ -180,9 +170,7 @@ TEST_CASE_FIXTURE(
     checkEach(XR_ERROR_HANDLE_INVALID, {begin_region(XR_NULL_HANDLE, &frame), end_region(XR_NULL_HANDLE)});
 }
 
-TEST_CASE_FIXTURE(
-    MessageFixture,
-    "what an application's message says is passed on, but objects go by the names they were given for good") {
+TEST_CASE_FIXTURE(MessageFixture, "messages are passed on as they are, but objects go by their given names") {
     const auto region = label("the session's own");
     checkEach(XR_SUCCESS,
               {XR(xrSessionBeginDebugUtilsLabelRegionEXT)(session, &region), setName(instance, &object)});
@@ -193,9 +181,9 @@ TEST_CASE_FIXTURE(
     objects[2].objectHandle = 77;
     objects[2].objectName = "never registered";
     auto data = hello(nullptr, objects, labels);
+    const auto send = [&] { return submit(instance, kInfo, kGeneral, &data); };
     const std::string rest =
         ": hello, in inner, in outer, of the session, of the session, of never registered";
-    const auto send = [&] { return submit(instance, kInfo, kGeneral, &data); };
     CHECK(send() == XR_SUCCESS);
     CHECK(heard.take() == "info general: none in none" + rest);
     data.messageId = "an id";
@@ -206,9 +194,7 @@ TEST_CASE_FIXTURE(
                  to(data.sessionLabels, nullptr));
 }
 
-TEST_CASE(
-    "a messenger in the chain hears why the instance itself was refused; messages come through the loader, "
-    "too") {
+TEST_CASE("a messenger in the chain hears why the instance was refused; others hear through the loader") {
     Heard heard;
     {
         const Headset headset(kQuietScript);
@@ -220,8 +206,7 @@ TEST_CASE(
         CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
         CHECK(heard.take() ==
               "error validation: XR_ERROR_EXTENSION_NOT_PRESENT in xrCreateInstance: XR_KHR_opengl_enable: "
-              "this runtime has Vulkan alone, "
-              "XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
+              "this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
         // Without the extension, there is nobody to receive messages.
         info = instanceInfo(unknown);
         info.next = &heard.info;

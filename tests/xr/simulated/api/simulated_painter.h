@@ -1,19 +1,31 @@
-// Swapchain images with given texels, for programs on the simulated runtime.
+// Swapchain images with given texels, for programs on the simulated runtime, and what its wearer sees.
 #pragma once
 
 #include "tests/xr/simulated/api/simulated_fixture.h"
+#include "xr/simulated/compose/compose.h"
+#include "xr/simulated/compose/picture_file.h"
+
+#include <vulkan/vulkan.hpp>
 
 namespace binosplat::test {
 
+using Rgb = std::array<int, 3>;
+using Rgba = std::array<std::uint8_t, 4>;
+
+// One pixel of a picture, or of one eye's half of it.
+inline Rgb at(const simulated::RgbPicture& picture, std::uint32_t x, std::uint32_t y) {
+    const std::size_t i = 3 * (std::size_t{y} * picture.size_px.x + x);
+    return {picture.bytes[i], picture.bytes[i + 1], picture.bytes[i + 2]};
+}
+
+inline Rgb at(const simulated::RgbPicture& both, simulated::Side side, std::uint32_t x, std::uint32_t y) {
+    return at(both, x + (side == simulated::kRight ? both.size_px.x / 2 : 0), y);
+}
+
 class Painter {
 public:
-    explicit Painter(const SessionFixture& owner) : fixture(owner) {
-        const VkCommandPoolCreateInfo info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, 0};
-        REQUIRE(vkCreateCommandPool(fixture.device, &info, nullptr, &pool) == VK_SUCCESS);
-    }
-    ~Painter() { vkDestroyCommandPool(fixture.device, pool, nullptr); }
-    Painter(const Painter&) = delete;
-    Painter& operator=(const Painter&) = delete;
+    explicit Painter(const SessionFixture& owner)
+        : fixture(owner), device(owner.device), pool(device.createCommandPoolUnique({})) {}
 
     [[nodiscard]] XrSwapchain makeSwapchain(VkFormat format, std::uint32_t width, std::uint32_t height,
                                             std::uint32_t layers = 1, std::uint32_t faces = 1) const {
@@ -33,9 +45,26 @@ public:
                const std::vector<Texel>& texels) const {
         const std::uint32_t index = fixture.acquire(swapchain);
         REQUIRE(xrWaitSwapchainImage(swapchain, &kWait) == XR_SUCCESS);
+        const vk::Image image = fixture.imagesOf(swapchain).at(index);
         const auto layers = static_cast<std::uint32_t>(texels.size() / (std::size_t{width} * height));
-        copy(fixture.imagesOf(swapchain).at(index), {width, height, 1}, layers, texels.data(),
-             texels.size() * sizeof(Texel));
+        const auto bytes = std::as_bytes(std::span(texels));
+        const vk::UniqueBuffer buffer =
+            device.createBufferUnique({{}, bytes.size(), vk::BufferUsageFlagBits::eTransferSrc});
+        const vk::MemoryRequirements needs = device.getBufferMemoryRequirements(*buffer);
+        const vk::UniqueDeviceMemory memory =
+            device.allocateMemoryUnique({needs.size, hostMemory(needs.memoryTypeBits)});
+        device.bindBufferMemory(*buffer, *memory, 0);
+        std::memcpy(device.mapMemory(*memory, 0, VK_WHOLE_SIZE), bytes.data(), bytes.size());
+        run([&](vk::CommandBuffer commands) {
+            // An application gets images in the layout for drawing, and returns them in it.
+            constexpr auto kDrawn = vk::ImageLayout::eColorAttachmentOptimal;
+            constexpr auto kCopied = vk::ImageLayout::eTransferDstOptimal;
+            move(commands, image, layers, kDrawn, kCopied);
+            const vk::BufferImageCopy region(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, layers}, {},
+                                             {width, height, 1});
+            commands.copyBufferToImage(*buffer, image, kCopied, region);
+            move(commands, image, layers, kCopied, kDrawn);
+        });
     }
     template <class Texel>
     void paint(XrSwapchain swapchain, std::uint32_t width, std::uint32_t height,
@@ -45,74 +74,29 @@ public:
     }
 
     // Records commands, and waits until they are done.
-    template <class Record>
-    void run(const Record& record) const {
-        VkCommandBuffer commands = VK_NULL_HANDLE;
-        const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
-                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-        REQUIRE(vkAllocateCommandBuffers(fixture.device, &info, &commands) == VK_SUCCESS);
-        const VkCommandBufferBeginInfo begin_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
-                                                  VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
-        REQUIRE(vkBeginCommandBuffer(commands, &begin_info) == VK_SUCCESS);
+    void run(const std::function<void(vk::CommandBuffer)>& record) const {
+        const auto commands = device.allocateCommandBuffers({*pool, vk::CommandBufferLevel::ePrimary, 1})[0];
+        commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
         record(commands);
-        REQUIRE(vkEndCommandBuffer(commands) == VK_SUCCESS);
-        const VkSubmitInfo submit{
-            VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr, 0, nullptr, nullptr, 1, &commands, 0, nullptr};
-        REQUIRE(vkQueueSubmit(fixture.queue(), 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS);
-        REQUIRE(vkQueueWaitIdle(fixture.queue()) == VK_SUCCESS);
+        commands.end();
+        const vk::Queue queue = device.getQueue(0, 0);
+        queue.submit(vk::SubmitInfo({}, {}, commands));
+        queue.waitIdle();
     }
-    static void move(VkCommandBuffer commands, VkImage image, std::uint32_t layers, VkImageLayout from,
-                     VkImageLayout to, VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT) {
-        VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-        barrier.srcAccessMask = barrier.dstAccessMask =
-            VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.oldLayout = from;
-        barrier.newLayout = to;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.image = image;
-        barrier.subresourceRange = {aspects, 0, 1, 0, layers};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                             0, 0, nullptr, 0, nullptr, 1, &barrier);
+    static void move(vk::CommandBuffer commands, vk::Image image, std::uint32_t layers, vk::ImageLayout from,
+                     vk::ImageLayout to, vk::ImageAspectFlags aspects = vk::ImageAspectFlagBits::eColor) {
+        const vk::AccessFlags any = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+        const vk::ImageMemoryBarrier barrier(any, any, from, to, VK_QUEUE_FAMILY_IGNORED,
+                                             VK_QUEUE_FAMILY_IGNORED, image, {aspects, 0, 1, 0, layers});
+        constexpr auto kAll = vk::PipelineStageFlagBits::eAllCommands;
+        commands.pipelineBarrier(kAll, kAll, {}, {}, {}, barrier);
     }
 
 private:
-    void copy(VkImage image, VkExtent3D size, std::uint32_t layers, const void* texels,
-              std::size_t bytes) const {
-        VkBuffer buffer = VK_NULL_HANDLE;
-        VkBufferCreateInfo buffer_info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-        buffer_info.size = bytes;
-        buffer_info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-        REQUIRE(vkCreateBuffer(fixture.device, &buffer_info, nullptr, &buffer) == VK_SUCCESS);
-        VkMemoryRequirements needs{};
-        vkGetBufferMemoryRequirements(fixture.device, buffer, &needs);
-        const VkMemoryAllocateInfo memory_info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size,
-                                               hostMemory(needs.memoryTypeBits)};
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        REQUIRE(vkAllocateMemory(fixture.device, &memory_info, nullptr, &memory) == VK_SUCCESS);
-        REQUIRE(vkBindBufferMemory(fixture.device, buffer, memory, 0) == VK_SUCCESS);
-        void* mapped = nullptr;
-        REQUIRE(vkMapMemory(fixture.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS);
-        std::memcpy(mapped, texels, bytes);
-        vkUnmapMemory(fixture.device, memory);
-        run([&](VkCommandBuffer commands) {
-            // An application gets images in the layout for drawing, and returns them in it.
-            move(commands, image, layers, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-            const VkBufferImageCopy region{0,         0,   0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, layers},
-                                           {0, 0, 0}, size};
-            vkCmdCopyBufferToImage(commands, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-            move(commands, image, layers, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-        });
-        vkDestroyBuffer(fixture.device, buffer, nullptr);
-        vkFreeMemory(fixture.device, memory, nullptr);
-    }
-
     [[nodiscard]] std::uint32_t hostMemory(std::uint32_t allowed) const {
-        VkPhysicalDeviceMemoryProperties memory{};
-        vkGetPhysicalDeviceMemoryProperties(fixture.physical_device, &memory);
-        constexpr VkMemoryPropertyFlags kHost =
-            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        const auto memory = vk::PhysicalDevice(fixture.physical_device).getMemoryProperties();
+        constexpr auto kHost =
+            vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
         std::uint32_t type = 0;
         while (type < memory.memoryTypeCount &&
                ((allowed >> type & 1) == 0 || (memory.memoryTypes[type].propertyFlags & kHost) != kHost)) {
@@ -123,7 +107,26 @@ private:
     }
 
     const SessionFixture& fixture;
-    VkCommandPool pool = VK_NULL_HANDLE;
+    vk::Device device;
+    vk::UniqueCommandPool pool;
+};
+
+// A session in focus, whose last picture is read back.
+struct Wearer : SessionFixture {
+    Painter painter{*this};
+
+    explicit Wearer(const std::string& script, const Extensions& extensions = {})
+        : SessionFixture(script, extensions) {}
+
+    // A picture of one colour.
+    [[nodiscard]] XrSwapchain plain(std::uint32_t size, const Rgba& colour) const {
+        const XrSwapchain swapchain = painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, size, size);
+        painter.paint(swapchain, size, size, std::vector<Rgba>(std::size_t{size} * size, colour));
+        return swapchain;
+    }
+    [[nodiscard]] simulated::RgbPicture seen() const {
+        return simulated::readPng(written / logged().back()["picture"].get<std::string>());
+    }
 };
 
 }  // namespace binosplat::test

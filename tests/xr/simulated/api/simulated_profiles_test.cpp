@@ -15,6 +15,14 @@ struct Bound {
     XrAction action = XR_NULL_HANDLE;
 };
 
+struct Reading {
+    bool is_active = false, has_changed = false;
+    XrTime changed_at = 0;
+    float x = 0, y = 0;
+
+    bool operator==(const Reading&) const = default;
+};
+
 XrActionType typeOf(simulated::ComponentKind kind) {
     using enum simulated::ComponentKind;
     return kind == kBoolean ? XR_ACTION_TYPE_BOOLEAN_INPUT
@@ -54,18 +62,18 @@ Extensions namesOf(const simulated::Enabled& enabled) {
 struct Played : HeadlessSession {
     XrPath profile_path, user_path;
     XrActionSet set = makeActionSet("all");
-    std::vector<Bound> bindings;
+    std::vector<Bound> inputs;
 
     Played(const Profile& profile, std::string_view user)
         : HeadlessSession(k1_1, namesOf(enabledFor(profile))),
           profile_path(path(std::string(profile.path))),
-          user_path(path(std::string(user))),
-          bindings(bindingsOf(profile, user)) {
-        std::vector<XrActionSuggestedBinding> suggested;
-        for (Bound& bound : bindings) {
+          user_path(path(std::string(user))) {
+        Bindings suggested;
+        for (Bound bound : bindingsOf(profile, user)) {
             bound.action =
                 makeAction(set, "action_" + std::to_string(suggested.size()), bound.type, {user_path});
-            suggested.push_back({bound.action, path(bound.path)});
+            suggested.push_back({bound.action, bound.path});
+            if (bound.type != XR_ACTION_TYPE_VIBRATION_OUTPUT) { inputs.push_back(bound); }
         }
         REQUIRE(suggest(std::string(profile.path), suggested) == XR_SUCCESS);
         attach({set});
@@ -79,39 +87,31 @@ struct Played : HeadlessSession {
     }
     void move(const Bound& bound, float value) const {
         const XrPath source = path(bound.path);
-        if (bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT) {
-            REQUIRE(XR(xrSetInputDeviceStateBoolEXT)(session, user_path, source, value > 0) == XR_SUCCESS);
-        } else if (bound.type == XR_ACTION_TYPE_FLOAT_INPUT) {
-            REQUIRE(XR(xrSetInputDeviceStateFloatEXT)(session, user_path, source, value) == XR_SUCCESS);
-        } else if (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT) {
-            REQUIRE(XR(xrSetInputDeviceStateVector2fEXT)(session, user_path, source, {value, -value}) ==
-                    XR_SUCCESS);
-        }
+        const auto moved = [&](auto set_state, auto state) {
+            return set_state(session, user_path, source, state);
+        };
+        REQUIRE(XR_SUCCESS == (bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT
+                                   ? moved(XR(xrSetInputDeviceStateBoolEXT), value > 0)
+                               : bound.type == XR_ACTION_TYPE_FLOAT_INPUT
+                                   ? moved(XR(xrSetInputDeviceStateFloatEXT), value)
+                                   : moved(XR(xrSetInputDeviceStateVector2fEXT), XrVector2f{value, -value})));
         synchronize();
     }
-
-    struct Reading {
-        bool is_active, has_changed;
-        XrTime changed_at;
-        float x, y;
-    };
     Reading read(const Bound& bound) const {
-        const auto reading = [](const auto& state) {
-            const bool is_active = state.isActive != 0, has_changed = state.changedSinceLastSync != 0;
-            if constexpr (requires { state.currentState.x; }) {
-                const auto [x, y] = state.currentState;
-                return Reading{is_active, has_changed, state.lastChangeTime, x, y};
-            } else {
-                const auto x = static_cast<float>(state.currentState);
-                return Reading{is_active, has_changed, state.lastChangeTime, x, 0};
-            }
+        const auto reading = [](const auto& state, XrVector2f value) {
+            return Reading{state.isActive != 0, state.changedSinceLastSync != 0, state.lastChangeTime,
+                           value.x, value.y};
         };
-        if (bound.type == XR_ACTION_TYPE_POSE_INPUT) {
-            return {pose(bound.action, user_path).isActive != 0, false, 0, 0, 0};
+        const auto readNumber = [&](const auto& state) {
+            return reading(state, {static_cast<float>(state.currentState), 0});
+        };
+        if (bound.type == XR_ACTION_TYPE_POSE_INPUT) { return {pose(bound.action, user_path).isActive != 0}; }
+        if (bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT) {
+            return readNumber(boolean(bound.action, user_path));
         }
-        return bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? reading(boolean(bound.action, user_path))
-               : bound.type == XR_ACTION_TYPE_FLOAT_INPUT ? reading(number(bound.action, user_path))
-                                                          : reading(vector(bound.action, user_path));
+        if (bound.type == XR_ACTION_TYPE_FLOAT_INPUT) { return readNumber(number(bound.action, user_path)); }
+        const XrActionStateVector2f state = vector(bound.action, user_path);
+        return reading(state, state.currentState);
     }
 
     // A quarter turn to the left, at (1, 2, 3).
@@ -122,11 +122,30 @@ struct Played : HeadlessSession {
         REQUIRE(XR(xrSetInputDeviceLocationEXT)(session, user_path, path(bound.path), stage, wanted) ==
                 XR_SUCCESS);
         synchronize();
-        const XrSpaceLocation location = locate(makeActionSpace(bound.action, user_path), stage, kStart);
-        CHECK((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
-        const XrPosef& found = location.pose;
+        const auto [type, next, flags, found] =
+            locate(makeActionSpace(bound.action, user_path), stage, kStart);
+        CHECK((flags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
         checkNear(found.position, {1, 2, 3});
         CHECK(std::abs(found.orientation.y * kHalf + found.orientation.w * kHalf) == doctest::Approx(1));
+    }
+    // It moves by itself, and is held and released.
+    void checkMoves(const Bound& bound) const {
+        const float value = bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? 1.0f : 0.75f;
+        move(bound, value);
+        const Reading moved = read(bound);
+        CHECK(these(moved.x, moved.y) ==
+              these(value, (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f)));
+        CHECK((moved.has_changed && moved.changed_at > 0));
+        for (const Bound& other : inputs) {
+            if (other.path == bound.path || other.type != bound.type) { continue; }
+            CHECK_MESSAGE(read(other).x == 0, other.path);
+        }
+        synchronize();
+        CHECK((read(bound) == Reading{true, false, moved.changed_at, moved.x, moved.y}));
+        move(bound, 0);
+        const Reading released = read(bound);
+        CHECK((released == Reading{true, true, released.changed_at, 0, 0}));
+        CHECK(released.changed_at > moved.changed_at);
     }
 };
 
@@ -164,48 +183,24 @@ SCRIPT(simulated_profiles, "xr/simulated/api/simulated_profiles") {
     runScript(host);
 }
 
-TEST_CASE(
-    "every input of every profile is read as it is moved, each by itself, every pose where it is put, while "
-    "its device is there") {
+TEST_CASE("every input of every profile is read as it is moved, every pose where it is put") {
     for (const Profile& profile : simulated::listProfiles()) {
         for (const std::string_view user : profile.user_paths) {
-            INFO(std::string(profile.path), " ", std::string(user));
             const Played played(profile, user);
             played.switchTo(false);
-            for (const Bound& bound : played.bindings) {
-                if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
-                const Played::Reading off = played.read(bound);
-                CHECK_MESSAGE(!off.is_active, bound.path);
-                CHECK_MESSAGE((off.x == 0 && off.y == 0 && off.changed_at == 0 && !off.has_changed),
-                              bound.path);
+            for (const Bound& bound : played.inputs) {
+                CHECK_MESSAGE((played.read(bound) == Reading{}), std::string(profile.path),
+                              " without its device: ", bound.path);
             }
             played.switchTo(true);
-            for (const Bound& bound : played.bindings) {
-                INFO(bound.path);
-                if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
+            for (const Bound& bound : played.inputs) {
+                INFO(std::string(profile.path), " ", bound.path);
                 CHECK(played.read(bound).is_active);
                 if (bound.type == XR_ACTION_TYPE_POSE_INPUT) {
                     played.checkPose(bound);
-                    continue;
+                } else {
+                    played.checkMoves(bound);
                 }
-                const float value = bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? 1.0f : 0.75f;
-                played.move(bound, value);
-                const Played::Reading moved = played.read(bound);
-                CHECK(these(moved.x, moved.y) ==
-                      these(value, (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f)));
-                CHECK((moved.has_changed && moved.changed_at > 0));
-                // Nothing else of its type moves with it.
-                for (const Bound& other : played.bindings) {
-                    if (&other == &bound || other.type != bound.type) { continue; }
-                    CHECK_MESSAGE(played.read(other).x == 0, other.path);
-                }
-                played.synchronize();
-                const Played::Reading held = played.read(bound);
-                CHECK((held.x == value && !held.has_changed && held.changed_at == moved.changed_at));
-                played.move(bound, 0);
-                const Played::Reading released = played.read(bound);
-                CHECK((released.x == 0 && released.y == 0 && released.has_changed));
-                CHECK(released.changed_at > moved.changed_at);
             }
         }
     }
@@ -214,27 +209,24 @@ TEST_CASE(
 TEST_CASE("the palm's surface lies beside the grip, turned towards the index finger") {
     const HeadlessSession made(k1_1, {}, "controller left 0 position 1 2 3 turn 40 10\n");
     const XrActionSet set = made.makeActionSet("set");
-    const std::string hands[] = {"/user/hand/left", "/user/hand/right"};
-    const std::vector<XrPath> paths{made.path(hands[0]), made.path(hands[1])};
-    std::vector<XrAction> actions;
-    std::vector<XrActionSuggestedBinding> bindings;
-    for (const std::string name : {"grip", "grip_surface"}) {
-        actions.push_back(made.makeAction(set, name, XR_ACTION_TYPE_POSE_INPUT, paths));
-        for (const std::string& hand : hands) {
-            bindings.push_back({actions.back(), made.path(hand + "/input/" + name + "/pose")});
-        }
-    }
-    REQUIRE(made.suggest(kSimple, bindings) == XR_SUCCESS);
+    const auto makePose = [&](const char* name) {
+        return made.makeAction(set, name, XR_ACTION_TYPE_POSE_INPUT, {made.left, made.right});
+    };
+    const XrAction grip = makePose("grip"), surface = makePose("grip_surface");
+    REQUIRE(made.suggest(kSimple, {{grip, "/user/hand/left/input/grip/pose"},
+                                   {grip, "/user/hand/right/input/grip/pose"},
+                                   {surface, "/user/hand/left/input/grip_surface/pose"},
+                                   {surface, "/user/hand/right/input/grip_surface/pose"}}) == XR_SUCCESS);
     made.attach({set});
     made.begin();
     REQUIRE(made.sync(set) == XR_SUCCESS);
-    for (const XrPath hand : paths) {
-        const XrSpaceLocation location = made.locate(made.makeActionSpace(actions[1], hand),
-                                                     made.makeActionSpace(actions[0], hand), kStart);
-        CHECK(these(location.locationFlags, location.pose.position.x, location.pose.orientation.x) ==
-              these(15, doctest::Approx(hand == paths[0] ? -0.02 : 0.02),
-                    doctest::Approx(-std::sin(std::numbers::pi / 8))));
-        CHECK(location.pose.orientation.w == doctest::Approx(std::cos(std::numbers::pi / 8)));
+    for (const XrPath hand : {made.left, made.right}) {
+        const auto [type, next, flags, pose] =
+            made.locate(made.makeActionSpace(surface, hand), made.makeActionSpace(grip, hand), kStart);
+        CHECK(these(flags, pose.position.x, pose.orientation.x, pose.orientation.w) ==
+              these(15, doctest::Approx(hand == made.left ? -0.02 : 0.02),
+                    doctest::Approx(-std::sin(std::numbers::pi / 8)),
+                    doctest::Approx(std::cos(std::numbers::pi / 8))));
     }
 }
 

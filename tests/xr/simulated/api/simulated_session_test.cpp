@@ -7,10 +7,7 @@ SUITE(simulated_session) {
 using Json = nlohmann::json;
 
 constexpr XrDuration kPeriod = 10'000'000;  // 100 frames per second
-const States kWholeLife{XR_SESSION_STATE_IDLE,         XR_SESSION_STATE_READY,
-                        XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE,
-                        XR_SESSION_STATE_FOCUSED,      XR_SESSION_STATE_VISIBLE,
-                        XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING};
+const std::string kWholeLife = " IDLE READY SYNCHRONIZED VISIBLE FOCUSED VISIBLE SYNCHRONIZED STOPPING";
 
 struct Begun : SessionFixture {
     explicit Begun(const std::string& script, const Extensions& extensions = {})
@@ -23,41 +20,38 @@ struct Begun : SessionFixture {
         for (int i = 0; i < count; ++i) { states.push_back(frame()); }
         return states;
     }
+    // Waits for frames and begins them, until the session should stop: its states so far.
+    template <class Body>
+    std::string runOn(const Body& endFrame) const {
+        std::string seen;
+        for (int i = 0; i < 50; ++i) {
+            const XrTime time = waitFrame().predictedDisplayTime;
+            if (const std::string now = states(); !now.empty()) { seen += " " + now; }
+            if (seen.ends_with("STOPPING")) { break; }
+            CHECK(XR_SUCCEEDED(xrBeginFrame(session, nullptr)));
+            endFrame(time);
+        }
+        return seen;
+    }
+    // The result of the first xrWaitFrame that fails within ten frames.
+    XrResult waitForFailure() const {
+        XrFrameState state{XR_TYPE_FRAME_STATE};
+        XrResult result = xrWaitFrame(session, nullptr, &state);
+        for (int i = 0; i < 10 && XR_SUCCEEDED(result); ++i) {
+            xrBeginFrame(session, nullptr);
+            endFrame(state.predictedDisplayTime);
+            result = xrWaitFrame(session, nullptr, &state);
+        }
+        return result;
+    }
 };
 
 // A hundred frames per second, and the wearer leaves after ten.
 struct Leaving : Begun {
     Leaving() : Begun("rate 100\nat 0.1 exit") {}
-
-    // Waits for frames and passes on their times, until the session should stop.
-    template <class Body>
-    States runOn(const Body& body) const {
-        States seen;
-        for (int i = 0; i < 50; ++i) {
-            const XrTime time = waitFrame().predictedDisplayTime;
-            for (const XrSessionState state : states()) { seen.push_back(state); }
-            if (!seen.empty() && seen.back() == XR_SESSION_STATE_STOPPING) { break; }
-            CHECK(XR_SUCCEEDED(xrBeginFrame(session, nullptr)));
-            body(time);
-        }
-        return seen;
-    }
 };
 
-// The result of the first xrWaitFrame that fails within ten frames.
-XrResult failureOf(const SessionFixture& made) {
-    XrFrameState state{XR_TYPE_FRAME_STATE};
-    XrResult result = xrWaitFrame(made.session, nullptr, &state);
-    for (int i = 0; i < 10 && XR_SUCCEEDED(result); ++i) {
-        xrBeginFrame(made.session, nullptr);
-        made.endFrame(state.predictedDisplayTime);
-        result = xrWaitFrame(made.session, nullptr, &state);
-    }
-    return result;
-}
-
-TEST_CASE_FIXTURE(VulkanFixture,
-                  "a session wants a graphics binding and a system; its objects and events end with it") {
+TEST_CASE_FIXTURE(VulkanFixture, "a session wants a GPU and a system; its objects and events end with it") {
     XrGraphicsBindingVulkan2KHR graphics = binding(), second = graphics;
     XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
     const auto make = [&] { return xrCreateSession(instance, &info, &session); };
@@ -70,64 +64,55 @@ TEST_CASE_FIXTURE(VulkanFixture,
     XrSession another = XR_NULL_HANDLE;
     CHECK(xrCreateSession(instance, &info, &another) == XR_ERROR_LIMIT_REACHED);
 
+    // A handle of one type is not accepted as another.
     const XrSwapchainCreateInfo swapchain_info = swapchainInfo();
     XrSwapchain swapchain = XR_NULL_HANDLE;
     REQUIRE(xrCreateSwapchain(session, &swapchain_info, &swapchain) == XR_SUCCESS);
-    // A handle of one type is not accepted as another.
     checkEach(XR_ERROR_HANDLE_INVALID, {xrDestroySession(reinterpret_cast<XrSession>(swapchain)),
                                         xrDestroySpace(reinterpret_cast<XrSpace>(session)),
                                         xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)),
                                         xrDestroySession(XR_NULL_HANDLE)});
     CHECK(xrDestroySession(session) == XR_SUCCESS);
     checkEach(XR_ERROR_HANDLE_INVALID, {xrDestroySwapchain(swapchain), xrRequestExitSession(session)});
-    CHECK(states().empty());
+    CHECK(states() == "");
     checkEach(XR_SUCCESS, {make(), xrDestroySession(session), make()});
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
+    CHECK(states() == "IDLE READY");
 }
 
-TEST_CASE_FIXTURE(
-    SessionFixture,
-    "a session begins once, when it is READY, in stereo, and goes from IDLE to FOCUSED, a state per frame") {
+TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when READY, in stereo, and has a state per frame") {
     XrFrameState state{XR_TYPE_FRAME_STATE};
     checkEach(XR_ERROR_SESSION_NOT_RUNNING,
               {xrWaitFrame(session, nullptr, &state), xrBeginFrame(session, nullptr), endFrame(1),
                xrEndSession(session), xrRequestExitSession(session)});
-
     XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kStereo};
     const auto begin = [&] { return xrBeginSession(session, &info); };
     CHECK(with(info.primaryViewConfigurationType, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, begin) ==
           XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
     checkArguments(xrBeginSession, session, &info);
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
+    CHECK(states() == "IDLE READY");
     CHECK(begin() == XR_SUCCESS);
     CHECK(begin() == XR_ERROR_SESSION_RUNNING);
 
     // Frames should be drawn from VISIBLE on; in lock-step, a frame lasts one period.
-    state = frame();
-    CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) ==
-          these(XR_FALSE, 11'111'111, kStart));
-    CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
-    state = frame();
-    CHECK(these(state.shouldRender, state.predictedDisplayTime) ==
-          these(XR_FALSE, kStart + state.predictedDisplayPeriod));
-    CHECK(states() == States{XR_SESSION_STATE_VISIBLE});
-    CHECK(frame().shouldRender == XR_TRUE);
-    CHECK(states() == States{XR_SESSION_STATE_FOCUSED});
-    frame();
-    CHECK(states().empty());
-
+    XrTime time = kStart;
+    for (const std::string expected : {"SYNCHRONIZED", "VISIBLE", "FOCUSED", ""}) {
+        const bool is_drawn = expected == "FOCUSED" || expected.empty();
+        state = frame();
+        CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) ==
+              these(is_drawn, 11'111'111, time));
+        CHECK(states() == expected);
+        time += state.predictedDisplayPeriod;
+    }
     CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_STOPPING);
     CHECK(xrRequestExitSession(session) == XR_SUCCESS);
     for (int i = 0; i < 3; ++i) { frame(); }
-    CHECK(states() ==
-          States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
+    CHECK(states() == "VISIBLE SYNCHRONIZED STOPPING");
     CHECK(xrEndSession(session) == XR_SUCCESS);
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
+    CHECK(states() == "IDLE EXITING");
     CHECK(begin() == XR_ERROR_SESSION_NOT_READY);
 }
 
-TEST_CASE_FIXTURE(SessionFixture,
-                  "frames are waited for, begun and ended in this order, in structures of their types") {
+TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended, in structures of their types") {
     begin();
     checkEach(XR_ERROR_CALL_ORDER_INVALID, {xrBeginFrame(session, nullptr), endFrame(1)});
     XrFrameState state{XR_TYPE_FRAME_END_INFO};
@@ -144,14 +129,12 @@ TEST_CASE_FIXTURE(SessionFixture,
     const XrTime second = waitFrame().predictedDisplayTime;
     CHECK(xrBeginFrame(session, nullptr) == XR_FRAME_DISCARDED);
 
-    XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,           nullptr, second,
-                        XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 0,       nullptr};
+    XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO, nullptr, second, XR_ENVIRONMENT_BLEND_MODE_OPAQUE};
     const auto end = [&] { return xrEndFrame(session, &info); };
     checkArguments(xrEndFrame, session, &info);
     CHECK(with(info.environmentBlendMode, XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, end) ==
           XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
-    CHECK(with(info.environmentBlendMode, static_cast<XrEnvironmentBlendMode>(0), end) ==
-          XR_ERROR_VALIDATION_FAILURE);
+    CHECK(with(info.environmentBlendMode, XrEnvironmentBlendMode{}, end) == XR_ERROR_VALIDATION_FAILURE);
     // A frame whose end was refused can be ended again.
     checkChanges(end, XR_ERROR_TIME_INVALID, to(info.displayTime, 0), to(info.displayTime, -5));
     CHECK(end() == XR_SUCCESS);
@@ -181,21 +164,20 @@ TEST_CASE("the script hides the session, takes its focus, and lets frames go und
     const Begun made(
         "rate 10\nat 1 focused off\nat 2 visible off\nat 3 visible on\nat 3.5 focused on\nat 4 should-render "
         "off\n");
-    States states;
+    std::string found;
+    bool was_drawn = false;
     for (int shown = 0; shown <= 41; ++shown) {
-        CAPTURE(shown);
-        const bool is_seen = (shown >= 2 && shown <= 20) || (shown > 30 && shown < 40);
-        CHECK((made.frame().shouldRender == XR_TRUE) == is_seen);
-        for (const XrSessionState state : made.states()) {
-            states.push_back(state);
-            if (shown <= 2) { continue; }
-            CHECK(shown == std::map<std::size_t, int>{{6, 10}, {7, 20}, {8, 30}, {9, 35}}[states.size()]);
+        const bool is_drawn = made.frame().shouldRender == XR_TRUE;
+        if (is_drawn != std::exchange(was_drawn, is_drawn)) {
+            found += fmt::format("{} {}, ", shown, is_drawn ? "drawn" : "not drawn");
+        }
+        if (const std::string now = made.states(); !now.empty()) {
+            found += fmt::format("{} {}, ", shown, now);
         }
     }
-    CHECK(states == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY, XR_SESSION_STATE_SYNCHRONIZED,
-                           XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED, XR_SESSION_STATE_VISIBLE,
-                           XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE,
-                           XR_SESSION_STATE_FOCUSED});
+    CHECK(found ==
+          "0 IDLE READY SYNCHRONIZED, 1 VISIBLE, 2 drawn, 2 FOCUSED, 10 VISIBLE, 20 SYNCHRONIZED, "
+          "21 not drawn, 30 VISIBLE, 31 drawn, 35 FOCUSED, 40 not drawn, ");
 }
 
 TEST_CASE("a session that is being lost says so with every success, and then fails; the next one is well") {
@@ -204,14 +186,14 @@ TEST_CASE("a session that is being lost says so with every success, and then fai
     made.frames(10);
     made.states();
     XrFrameState state{XR_TYPE_FRAME_STATE};
-    CHECK(xrWaitFrame(session, nullptr, &state) == XR_SESSION_LOSS_PENDING);
-    CHECK(made.states() == States{XR_SESSION_STATE_LOSS_PENDING});
     std::uint32_t count = 0;
-    CHECK(xrEnumerateReferenceSpaces(session, 0, &count, nullptr) == XR_SESSION_LOSS_PENDING);
-    CHECK(xrBeginFrame(session, nullptr) == XR_SESSION_LOSS_PENDING);
-    CHECK(made.endFrame(state.predictedDisplayTime) == XR_SESSION_LOSS_PENDING);
+    CHECK(xrWaitFrame(session, nullptr, &state) == XR_SESSION_LOSS_PENDING);
+    CHECK(made.states() == "LOSS_PENDING");
+    checkEach(XR_SESSION_LOSS_PENDING,
+              {xrEnumerateReferenceSpaces(session, 0, &count, nullptr), xrBeginFrame(session, nullptr),
+               made.endFrame(state.predictedDisplayTime)});
     checkEach(XR_ERROR_SESSION_LOST,
-              {failureOf(made), xrEnumerateReferenceSpaces(session, 0, &count, nullptr),
+              {made.waitForFailure(), xrEnumerateReferenceSpaces(session, 0, &count, nullptr),
                xrRequestExitSession(session)});
     CHECK(xrDestroySession(session) == XR_SUCCESS);
     // Time has moved on, so the script's line is in the history.
@@ -228,34 +210,30 @@ TEST_CASE("an instance that is lost says when, and then fails") {
     REQUIRE(made.poll(event) == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING);
     CHECK(reinterpret_cast<const XrEventDataInstanceLossPending&>(event).lossTime > time);
     CHECK(XR_SUCCEEDED(xrBeginFrame(made.session, nullptr)));
-    CHECK(failureOf(made) == XR_ERROR_INSTANCE_LOST);
     XrPath path = XR_NULL_PATH;
-    checkEach(XR_ERROR_INSTANCE_LOST,
-              {xrStringToPath(made.instance, "/a", &path), xrPollEvent(made.instance, &event)});
+    checkEach(XR_ERROR_INSTANCE_LOST, {made.waitForFailure(), xrStringToPath(made.instance, "/a", &path),
+                                       xrPollEvent(made.instance, &event)});
 }
 
 TEST_CASE("events that nobody polls are lost and counted") {
     // Loses and regains focus in every second frame, from the third on.
     std::string script = "rate 10\n";
     for (int i = 0; i < 110; ++i) {
-        script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n");
+        script += fmt::format("at {} focused {}\n", 0.25 + 0.1 * i, i % 2 == 0 ? "off" : "on");
     }
     const Begun made(script);
     made.frames(100);
     XrEventDataBuffer event;
     int kept = 0;
-    XrStructureType type = made.poll(event);
-    for (; type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED; type = made.poll(event)) { ++kept; }
+    while (made.poll(event) == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) { ++kept; }
     CHECK(kept == 64);
-    REQUIRE(type == XR_TYPE_EVENT_DATA_EVENTS_LOST);
+    REQUIRE(event.type == XR_TYPE_EVENT_DATA_EVENTS_LOST);
     // IDLE, READY, and a change with each of the frames.
     CHECK(reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount == 102 - 64);
     CHECK(made.poll(event) == XR_TYPE_UNKNOWN);
 }
 
-TEST_CASE(
-    "frames go by the display's rate from the next one on: that which the program requests, or the script, "
-    "which tells of it") {
+TEST_CASE("frames go by the display's rate from the next one on, as the program requests it, or the script") {
     const Begun made("rate 100\nat 0.1 rate 50", {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME});
     const auto request = made.XR(xrRequestDisplayRefreshRateFB);
     XrFrameState state = made.frame();
@@ -272,10 +250,7 @@ TEST_CASE(
     made.states();
     // From 0.0325 s on.
     for (int i = 0; i < 12; ++i) { CHECK(step() == (i < 7 ? kPeriod : 2 * kPeriod)); }
-    const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(
-        XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
-    REQUIRE(changes.size() == 1);
-    CHECK(these(changes[0].fromDisplayRefreshRate, changes[0].toDisplayRefreshRate) == these(100.0f, 50.0f));
+    CHECK(made.rateChanges() == "100 to 50");
     float rates[16] = {};
     std::uint32_t count = 0;
     REQUIRE(made.XR(xrEnumerateDisplayRefreshRatesFB)(made.session, 16, &count, rates) == XR_SUCCESS);
@@ -296,19 +271,16 @@ TEST_CASE("irregular periods differ, within what the script says, and do not dri
     CHECK(std::abs(before - kStart - 199 * kPeriod) <= kPeriod / 4);
 }
 
-TEST_CASE(
-    "a device that takes longer than a period misses displays, and the log says how long it takes; a "
-    "stretched period is as many as the frame before took") {
-    for (const bool is_stretched : {false, true}) {
+TEST_CASE("a device that takes longer than a period misses displays, which a stretched period counts") {
+    for (const std::string period : {"steady", "stretched"}) {
         const Begun made(
-            std::string("rate 100\nat 0.1 gpu-load 70 %\nat 0.2 gpu-load 25 ms\nat 0.4 gpu-load 0 ms\n") +
-            (is_stretched ? "period stretched" : ""));
+            "rate 100\nat 0.1 gpu-load 70 %\nat 0.2 gpu-load 25 ms\nat 0.4 gpu-load 0 ms\nperiod " + period);
         XrTime before = kStart - kPeriod;
         for (const XrFrameState& state : made.frames(40)) {
             const bool is_slow = before >= kStart + 20 * kPeriod && before < kStart + 40 * kPeriod;
             const XrDuration step = state.predictedDisplayTime - before;
             CHECK(step == (is_slow ? 3 : 1) * kPeriod);
-            CHECK(state.predictedDisplayPeriod == (is_stretched ? step : kPeriod));
+            CHECK(state.predictedDisplayPeriod == (period == "stretched" ? step : kPeriod));
             before = state.predictedDisplayTime;
         }
         std::set<double> said;
@@ -317,37 +289,29 @@ TEST_CASE(
     }
 }
 
-TEST_CASE_FIXTURE(Leaving,
-                  "the script goes on and the session moves though every frame is refused, and the log has "
-                  "each with its reason") {
+TEST_CASE_FIXTURE(Leaving, "the session moves though every frame is refused, and the log has the reasons") {
     const auto refuse = [&](XrTime time) {
         for (int i = 0; i < 2; ++i) { CHECK(endFrame(-time) == XR_ERROR_TIME_INVALID); }
     };
     CHECK(runOn(refuse) == kWholeLife);
     CHECK(xrEndSession(session) == XR_SUCCESS);
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
-    std::vector<std::string> events;
+    std::string events;
     XrTime refused = 0;
     for (const Json& line : logged()) {
         CHECK_FALSE(line.contains("frame"));
-        for (const auto& event : line["events"]) { events.push_back(event); }
+        for (const std::string event : line["events"]) { events += event + ", "; }
         if (!line.contains("refused")) { continue; }
-        CHECK(these(line["refused"], line["display_time_ns"]) ==
-              these("XR_ERROR_TIME_INVALID", kStart + kPeriod * refused));
-        CHECK(line["reason"] ==
-              "the time is " + std::to_string(-line["display_time_ns"].get<XrTime>()) + ", must be positive");
-        ++refused;
+        const XrTime time = kStart + kPeriod * refused++;
+        CHECK(these(line["refused"], line["display_time_ns"], line["reason"]) ==
+              these("XR_ERROR_TIME_INVALID", time, fmt::format("the time is {}, must be positive", -time)));
     }
     CHECK(refused == 13);
-    CHECK(events == std::vector<std::string>{"state IDLE", "state READY", "state SYNCHRONIZED",
-                                             "state VISIBLE", "state FOCUSED", "exit", "state VISIBLE",
-                                             "state SYNCHRONIZED", "state STOPPING", "state IDLE",
-                                             "state EXITING"});
+    CHECK(events ==
+          "state IDLE, state READY, state SYNCHRONIZED, state VISIBLE, state FOCUSED, exit, state VISIBLE, "
+          "state SYNCHRONIZED, state STOPPING, state IDLE, state EXITING, ");
 }
 
-TEST_CASE_FIXTURE(
-    Leaving,
-    "a frame that is refused and ended again moves the session once, and the log ends with its last states") {
+TEST_CASE_FIXTURE(Leaving, "a frame that is refused and ended again moves the session once") {
     const auto endTwice = [&](XrTime time) {
         CHECK(endFrame(0) == XR_ERROR_TIME_INVALID);
         CHECK(endFrame(time) == XR_SUCCESS);
@@ -358,6 +322,7 @@ TEST_CASE_FIXTURE(
     REQUIRE(lines.size() == 28);
     for (std::size_t i = 0; i < 26; ++i) { CHECK(lines[i].contains(i % 2 == 0 ? "refused" : "frame")); }
     CHECK(lines[25]["frame"] == 12);
+    // The log ends with the last states.
     CHECK(these(lines[26]["events"], lines[26]["session_state"]) ==
           these(Json{"state STOPPING"}, "STOPPING"));
     CHECK(lines[27] == Json{{"session_state", "EXITING"},
@@ -371,15 +336,15 @@ TEST_CASE_FIXTURE(Leaving, "frames that are given up move the session, too") {
 
 TEST_CASE("states change while a frame is open, where the script says so, and the frame may still be ended") {
     const Begun made("rate 100\nstate-changes at-begin\nat 0.2 worn off");
-    States seen = made.states();
-    for (int i = 0; i < 40 && seen.back() != XR_SESSION_STATE_STOPPING; ++i) {
+    std::string seen = " " + made.states();
+    for (int i = 0; i < 40 && !seen.ends_with("STOPPING"); ++i) {
         const XrFrameState state = made.waitFrame();
-        CHECK(made.states().empty());
+        CHECK(made.states() == "");
         const XrFrameBeginInfo info{XR_TYPE_FRAME_BEGIN_INFO};
         REQUIRE(xrBeginFrame(made.session, &info) == XR_SUCCESS);
-        for (const XrSessionState now : made.states()) { seen.push_back(now); }
+        if (const std::string now = made.states(); !now.empty()) { seen += " " + now; }
         CHECK(made.endFrame(state.predictedDisplayTime) == XR_SUCCESS);
-        CHECK(made.states().empty());
+        CHECK(made.states() == "");
     }
     CHECK(seen == kWholeLife);
     CHECK(xrEndSession(made.session) == XR_SUCCESS);

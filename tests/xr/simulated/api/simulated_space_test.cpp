@@ -34,8 +34,7 @@ struct Mask {
     float right() const { return std::ranges::max(vertices, {}, &XrVector2f::x).x; }
 };
 
-TEST_CASE_FIXTURE(SessionFixture,
-                  "reference spaces are VIEW, LOCAL and STAGE, each at a pose; the stage alone has bounds") {
+TEST_CASE_FIXTURE(SessionFixture, "spaces are VIEW, LOCAL and STAGE, of which the stage alone has bounds") {
     CHECK(checkListOf(XrReferenceSpaceType{}, xrEnumerateReferenceSpaces, session) ==
           std::vector{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL,
                       XR_REFERENCE_SPACE_TYPE_STAGE});
@@ -66,9 +65,8 @@ TEST_CASE_FIXTURE(SessionFixture,
     XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
     checkEach(XR_ERROR_TIME_INVALID,
               {xrLocateSpace(local, local, 0, &location), xrLocateSpace(local, local, -1, &location)});
+    CHECK(xrLocateSpace(local, XR_NULL_HANDLE, 1, &location) == XR_ERROR_HANDLE_INVALID);
     checkArguments([&](XrSpace of, auto* place) { return xrLocateSpace(of, local, 1, place); }, local,
-                   &location);
-    checkArguments([&](XrSpace base, auto* place) { return xrLocateSpace(local, base, 1, place); }, local,
                    &location);
 
     // A headset without a mask gives an empty one.
@@ -78,8 +76,7 @@ TEST_CASE_FIXTURE(SessionFixture,
     CHECK(mask.vertexCountOutput == 0);
 }
 
-TEST_CASE_FIXTURE(WalkingFixture,
-                  "spaces are located in one another as the script moves the head, and views at its eyes") {
+TEST_CASE_FIXTURE(WalkingFixture, "spaces are located as the script moves the head, and views at its eyes") {
     const XrSpace view = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW),
                   stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
     XrSpaceVelocity velocity{XR_TYPE_SPACE_VELOCITY};
@@ -107,15 +104,12 @@ TEST_CASE_FIXTURE(WalkingFixture,
     CHECK(views[0].fov.angleDown == doctest::Approx(-48 * M_PI / 180));
     CHECK(views[1].fov.angleLeft == doctest::Approx(-45 * M_PI / 180));
     CHECK(xrLocateViews(session, &info, nullptr, 2, &count, views.data()) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(
-        these(with(info.displayTime, 0, find), with(info.space, XR_NULL_HANDLE, find),
-              with(info.viewConfigurationType, kMono, find)) ==
-        these(XR_ERROR_TIME_INVALID, XR_ERROR_HANDLE_INVALID, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED));
+    CHECK(with(info.displayTime, 0, find) == XR_ERROR_TIME_INVALID);
+    CHECK(with(info.space, XR_NULL_HANDLE, find) == XR_ERROR_HANDLE_INVALID);
+    CHECK(with(info.viewConfigurationType, kMono, find) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
 }
 
-TEST_CASE_FIXTURE(
-    WalkingFixture,
-    "the visibility mask is a mesh in two calls, its outline goes once round the axis, counter-clockwise") {
+TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh; its outline goes once round the axis") {
     const auto getMask = XR(xrGetVisibilityMaskKHR);
     Mask whole(*this, 0, kHidden);
     const auto vertices = static_cast<std::uint32_t>(whole.vertices.size()),
@@ -186,21 +180,17 @@ TEST_CASE("a mask that changes with the eye's angles is announced once, for that
     }
 }
 
-TEST_CASE(
-    "LOCAL_FLOOR is there in 1.1, and in 1.0 by its extension: LOCAL brought down to the floor; a recentring "
-    "is announced for both") {
+TEST_CASE("LOCAL_FLOOR is LOCAL on the floor, in 1.1 or by its extension; recentring is announced for both") {
     for (const auto& [version, extensions] :
-         {std::pair(k1_1, Extensions{}), std::pair(k1_0, Extensions{XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}),
-          std::pair(k1_0, Extensions{})}) {
+         {std::pair(k1_1, Extensions{}), {k1_0, {XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}}, {k1_0, {}}}) {
         const HeadlessSession made(version, extensions,
-                                   "rate 10\nhead 0 position 1 1.6 0 turn 90 0\nhead 1 position -1 2.6 0 "
-                                   "turn 190 0\nat 0.15 recentre\n");
+                                   "rate 10\nhead 0 position 1 1.6 0 turn 90 0\n"
+                                   "head 1 position -1 2.6 0 turn 190 0\nat 0.15 recentre\n");
         XrReferenceSpaceType types[8];
         std::uint32_t count = 0;
         REQUIRE(made.XR(xrEnumerateReferenceSpaces)(made.session, 8, &count, types) == XR_SUCCESS);
-        const bool is_listed = std::count(types, types + count, kFloor) == 1,
-                   is_known = version == k1_1 || !extensions.empty();
-        CHECK(is_listed == is_known);
+        const bool is_known = version == k1_1 || !extensions.empty();
+        CHECK(std::count(types, types + count, kFloor) == is_known);
         XrExtent2Df bounds{-1, -1};
         CHECK(made.XR(xrGetReferenceSpaceBoundsRect)(made.session, kFloor, &bounds) ==
               (is_known ? XR_SPACE_BOUNDS_UNAVAILABLE : XR_ERROR_VALIDATION_FAILURE));

@@ -48,9 +48,8 @@ std::vector<std::uint32_t> turnsOf(const std::string& images, int times) {
     return found;
 }
 
-TEST_CASE_FIXTURE(
-    InstanceFixture,
-    "Vulkan's requirements are a range of versions, asked for before a session, its own refusal is told") {
+TEST_CASE_FIXTURE(InstanceFixture,
+                  "Vulkan's versions are asked for before a session, its own refusal is told") {
     const auto getRequirements = XR(xrGetVulkanGraphicsRequirements2KHR);
     XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
     CHECK(getRequirements(instance, system + 1, &requirements) == XR_ERROR_SYSTEM_INVALID);
@@ -66,32 +65,28 @@ TEST_CASE_FIXTURE(
 
     const auto create = XR(xrCreateVulkanInstanceKHR);
     const char* const nothing = "VK_KHR_nothing";
-    VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-    vulkan_info.enabledExtensionCount = 1;
-    vulkan_info.ppEnabledExtensionNames = &nothing;
+    const VkInstanceCreateInfo vulkan_info{
+        VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, nullptr, 0, nullptr, 1, &nothing};
     XrVulkanInstanceCreateInfoKHR info = vulkanInstanceInfo(vkGetInstanceProcAddr, vulkan_info);
     VkInstance vulkan = VK_NULL_HANDLE;
     VkResult result = VK_SUCCESS;
     const auto make = [&] { return create(instance, &info, &vulkan, &result); };
     CHECK(make() == XR_SUCCESS);
     CHECK(result == VK_ERROR_EXTENSION_NOT_PRESENT);
-    CHECK(with(info.createFlags, 1, make) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(with(info.systemId, 9, make) == XR_ERROR_SYSTEM_INVALID);
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.pfnGetInstanceProcAddr, nullptr),
-                 to(info.vulkanCreateInfo, nullptr));
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.createFlags, 1),
+                 to(info.pfnGetInstanceProcAddr, nullptr), to(info.vulkanCreateInfo, nullptr));
     checkArguments(create, instance, &info, &vulkan, &result);
 }
 
-TEST_CASE_FIXTURE(
-    VulkanFixture,
-    "the graphics device is one of Vulkan's instance, the same each time, and devices are made on it alone") {
+// The fixture checks that the graphics device is the same each time.
+TEST_CASE_FIXTURE(VulkanFixture,
+                  "the graphics device is one of Vulkan's instance; devices are made on it alone") {
     const auto get = XR(xrGetVulkanGraphicsDevice2KHR);
     XrVulkanGraphicsDeviceGetInfoKHR get_info{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system,
                                               vulkan};
     VkPhysicalDevice found = VK_NULL_HANDLE;
     const auto find = [&] { return get(instance, &get_info, &found); };
-    CHECK(find() == XR_SUCCESS);
-    CHECK(found == physical_device);
     CHECK(with(get_info.systemId, 0, find) == XR_ERROR_SYSTEM_INVALID);
     CHECK(with(get_info.vulkanInstance, VK_NULL_HANDLE, find) == XR_ERROR_VALIDATION_FAILURE);
     checkArguments(get, instance, &get_info, &found);
@@ -115,7 +110,6 @@ TEST_CASE_FIXTURE(
 TEST_CASE("the older extension has functions of its own, and needs no extensions of Vulkan") {
     const DirectInstance made(k1_0, {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME});
     CHECK_FALSE(made.has("xrCreateVulkanInstanceKHR"));
-    CHECK(made.has("xrGetVulkanGraphicsDeviceKHR"));
     for (const auto getExtensions :
          {made.XR(xrGetVulkanInstanceExtensionsKHR), made.XR(xrGetVulkanDeviceExtensionsKHR)}) {
         std::uint32_t count = 0;
@@ -123,7 +117,7 @@ TEST_CASE("the older extension has functions of its own, and needs no extensions
         CHECK(getExtensions(made.instance, 1, 0, &count, nullptr) == XR_SUCCESS);
         CHECK(count == 1);
         CHECK(getExtensions(made.instance, 1, 4, &count, text) == XR_SUCCESS);
-        CHECK(std::string(text).empty());
+        CHECK(std::string(text) == "");
         CHECK(getExtensions(made.instance, 2, 4, &count, text) == XR_ERROR_SYSTEM_INVALID);
     }
     const auto getRequirements = made.XR(xrGetVulkanGraphicsRequirementsKHR);
@@ -133,7 +127,7 @@ TEST_CASE("the older extension has functions of its own, and needs no extensions
 }
 
 TEST_CASE_FIXTURE(SessionFixture,
-                  "formats are enumerated, sRGB first, and a swapchain is refused for what it cannot be") {
+                  "formats are listed, sRGB first; a swapchain is refused what it cannot be") {
     const auto formats = checkListOf(std::int64_t{}, xrEnumerateSwapchainFormats, session);
     CHECK(formats.front() == VK_FORMAT_R8G8B8A8_SRGB);
     const std::set<int64_t> all(formats.begin(), formats.end());
@@ -146,12 +140,10 @@ TEST_CASE_FIXTURE(SessionFixture,
     XrSwapchainCreateInfo info = swapchainInfo();
     const auto make = [&] { return xrCreateSwapchain(session, &info, &swapchain); };
     CHECK(with(info.format, VK_FORMAT_R8_UNORM, make) == XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED);
-    for (std::uint32_t* size :
-         {&info.width, &info.height, &info.arraySize, &info.mipCount, &info.sampleCount}) {
-        CHECK(with(*size, 0, make) == XR_ERROR_VALIDATION_FAILURE);
-    }
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.width, 1 << 20), to(info.mipCount, 8),
-                 to(info.faceCount, 2), to(info.createFlags, 1 << 20), to(info.usageFlags, 1 << 20));
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.width, 0), to(info.height, 0),
+                 to(info.arraySize, 0), to(info.mipCount, 0), to(info.sampleCount, 0),
+                 to(info.width, 1 << 20), to(info.mipCount, 8), to(info.faceCount, 2),
+                 to(info.createFlags, 1 << 20), to(info.usageFlags, 1 << 20));
     checkChanges(make, XR_ERROR_FEATURE_UNSUPPORTED, to(info.sampleCount, 4), to(info.faceCount, 6),
                  to(info.createFlags, XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT),
                  to(info.usageFlags, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
@@ -166,9 +158,7 @@ TEST_CASE_FIXTURE(SessionFixture,
     CHECK(make() == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(
-    SessionFixture,
-    "every format, use and shape can be held whole, twice, and freed in between, and Vulkan agrees") {
+TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole, twice, and Vulkan agrees") {
     constexpr XrSwapchainUsageFlags kSampled = XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
     constexpr XrSwapchainUsageFlags kCopied =
         XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
@@ -204,9 +194,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE(
-    "images are made by the application's own loader, and ask for extended usage, of Vulkan 1.1, for shaders "
-    "that write alone") {
+TEST_CASE("images are made by the application's loader, with extended usage alone for shaders that write") {
     const SessionFixture recorded(kQuietScript, {}, ImageRecorder::find);
     const auto flagsFor = [&](XrSwapchainUsageFlags usage) {
         XrSwapchainCreateInfo info = swapchainInfo();
@@ -220,13 +208,11 @@ TEST_CASE(
                 (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT)));
 }
 
-TEST_CASE_FIXTURE(
-    SessionFixture,
-    "images are acquired, waited for and released in this order, not more than there are, oldest first") {
+TEST_CASE_FIXTURE(SessionFixture,
+                  "images are acquired, waited for and released in this order, oldest first") {
     const XrSwapchain swapchain = makeSwapchain();
     const std::vector<VkImage> images = imagesOf(swapchain);
-    CHECK(images.size() == 3);
-    CHECK(std::set<VkImage>(images.begin(), images.end()).size() == 3);
+    CHECK(these(images.size(), std::set(images.begin(), images.end()).size()) == these(3, 3));
     CHECK(imagesOf(swapchain) == images);
     std::uint32_t count = 0;
     CHECK(xrEnumerateSwapchainImages(XR_NULL_HANDLE, 0, &count, nullptr) == XR_ERROR_HANDLE_INVALID);
@@ -283,22 +269,18 @@ TEST_CASE("a slow image times out, and is there later; not while a session is be
     }
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on every turn") {
+// Colour is that of every painted picture.
+TEST_CASE_FIXTURE(SessionFixture, "images of depth are found in an attachment's layout, on every turn") {
     const Painter painter(*this);
-    for (const bool is_depth : {false, true}) {
-        const VkImageLayout layout = is_depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-                                              : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        // Uses the image as a drawing application would; validation checks the layout.
-        const auto use = [&](VkImage image) {
-            painter.run([&](VkCommandBuffer commands) {
-                Painter::move(commands, image, 1, layout, layout,
-                              is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT);
-            });
-        };
-        const XrSwapchain swapchain =
-            makeSwapchain(swapchainInfo(is_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_R8G8B8A8_SRGB));
-        for (int round = 0; round < 5; ++round) { turn(swapchain, use); }
-    }
+    const XrSwapchain swapchain = makeSwapchain(swapchainInfo(VK_FORMAT_D32_SFLOAT));
+    // Uses the image as a drawing application would; validation checks the layout.
+    const auto use = [&](VkImage image) {
+        painter.run([&](vk::CommandBuffer commands) {
+            constexpr auto kLayout = vk::ImageLayout::eDepthStencilAttachmentOptimal;
+            Painter::move(commands, image, 1, kLayout, kLayout, vk::ImageAspectFlagBits::eDepth);
+        });
+    };
+    for (int round = 0; round < 5; ++round) { turn(swapchain, use); }
 }
 
 TEST_CASE("images come in as many, and in the order, as the script says") {

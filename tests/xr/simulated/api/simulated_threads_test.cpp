@@ -21,8 +21,7 @@ void inThreads(int threads, const std::function<void(int)>& work) {
     }
 }
 
-TEST_CASE_FIXTURE(VulkanFixture,
-                  "of many threads that make a session one gets it, and a path is one number for all") {
+TEST_CASE_FIXTURE(VulkanFixture, "of many threads that make a session one gets it") {
     const XrGraphicsBindingVulkan2KHR graphics = binding();
     const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
     for (int round = 0; round < 5; ++round) {
@@ -38,7 +37,9 @@ TEST_CASE_FIXTURE(VulkanFixture,
         CHECK(these(made.load(), refused.load()) == these(1, kThreads - 1));
         CHECK(xrDestroySession(its) == XR_SUCCESS);
     }
+}
 
+TEST_CASE_FIXTURE(InstanceFixture, "a path is one number for all threads") {
     std::vector<std::vector<XrPath>> found(kThreads);
     inThreads(kThreads, [&](int thread) {
         for (int i = 0; i < kRounds; ++i) {
@@ -50,14 +51,12 @@ TEST_CASE_FIXTURE(VulkanFixture,
     for (const auto& paths : found) { CHECK(paths == found.front()); }
 }
 
-TEST_CASE_FIXTURE(SessionFixture,
-                  "each thread makes, uses and destroys its own, while another thread runs frames") {
+TEST_CASE_FIXTURE(SessionFixture, "each thread makes, uses and destroys its own, while another runs frames") {
     const XrActionSet walking = makeActionSet("walking");
-    const XrPath left = path("/user/hand/left");
     const XrAction jump = makeAction(walking, "jump", XR_ACTION_TYPE_BOOLEAN_INPUT, {left});
     const XrAction grip = makeAction(walking, "grip", XR_ACTION_TYPE_POSE_INPUT, {left});
-    REQUIRE(suggest(kSimple, {{jump, path("/user/hand/left/input/select/click")},
-                              {grip, path("/user/hand/left/input/grip/pose")}}) == XR_SUCCESS);
+    REQUIRE(suggest(kSimple, {{jump, "/user/hand/left/input/select/click"},
+                              {grip, "/user/hand/left/input/grip/pose"}}) == XR_SUCCESS);
     attach({walking});
     focus();
     std::atomic<int> at_work{kThreads};
@@ -80,9 +79,7 @@ TEST_CASE_FIXTURE(SessionFixture,
     });
 }
 
-TEST_CASE_FIXTURE(
-    SessionFixture,
-    "one thread waits for frames while another ends the ones before, each a period after the other") {
+TEST_CASE_FIXTURE(SessionFixture, "one thread waits for frames while another ends those a period before") {
     begin();
     std::array<XrFrameState, 30> states;
     std::counting_semaphore<> waited(0);
