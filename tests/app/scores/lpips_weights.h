@@ -1,4 +1,4 @@
-// Weights for LPIPS that come from no training, and their files.
+// Weights for LPIPS that come from no training.
 #pragma once
 
 #include "tests/suite.h"
@@ -36,14 +36,6 @@ inline void writeFloats(const fs::path& file, const std::vector<float>& values) 
     std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(values.data()),
                static_cast<std::streamsize>(values.size() * sizeof(float)));
-}
-
-inline std::vector<float> readFloats(const fs::path& file) {
-    std::vector<float> values(fs::file_size(file) / sizeof(float));
-    std::ifstream(file, std::ios::binary)
-        .read(reinterpret_cast<char*>(values.data()),
-              static_cast<std::streamsize>(values.size() * sizeof(float)));
-    return values;
 }
 
 }  // namespace binosplat::test

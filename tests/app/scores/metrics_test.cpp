@@ -8,14 +8,7 @@ SUITE(metrics) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What a test demands of a GPU's picture: close nearly everywhere, with a budget of flips at thresholds.
-bool passesBudget(const Image& a, const Image& b) {
-    const Difference difference = compare(a, b);
-    return difference.psnrDb() > 50.0 && difference.shareOff() < 0.001 && difference.not_finite == 0;
-}
-
 TEST_CASE("a constant difference of 0.1 is 20 dB, and values beyond 0 to 1 are compared as they are") {
-    // PSNR = -10 log10(0.1^2).
     const Difference difference = compare(makeGrey({4, 4}, 4, 0.5f), makeGrey({4, 4}, 4, 0.6f));
     CHECK(these(difference.psnrDb(), difference.largest, difference.shareOff()) ==
           these(doctest::Approx(20.0).epsilon(1e-6), doctest::Approx(0.1).epsilon(1e-6), 1.0));
@@ -45,21 +38,8 @@ TEST_CASE("one value that is not finite fails, even if both pictures have it") {
             const Difference difference = compare(a, b);
             CHECK(these(difference.not_finite, difference.off, difference.largest, difference.psnrDb()) ==
                   these(1, 1, kInfinity, -kInfinity));
-            CHECK_FALSE(passesBudget(a, b));
         }
     }
-}
-
-TEST_CASE("float noise and a rare flip pass the budget of a GPU picture, a shift and swapped eyes do not") {
-    const Image a = makeWaves({64, 64}, 1.5), other_eye = makeWaves({64, 64}, -1.5);
-    Image noisy = a;
-    for (std::size_t i = 0; i < noisy.values.size(); ++i) { noisy.values[i] += i % 2 == 0 ? 1e-5f : -1e-5f; }
-    noisy.values[400] += 0.01f;
-    CHECK(passesBudget(a, noisy));
-    CHECK_FALSE(passesBudget(a, makeWaves({64, 64}, 2.5)));
-    CHECK_FALSE(passesBudget(a, makeWaves({64, 64}, 1.6)));
-    CHECK_FALSE(passesBudget(a, other_eye));
-    CHECK_FALSE(passesBudget(other_eye, a));
 }
 
 TEST_CASE("pictures of other sizes or too few channels are refused") {

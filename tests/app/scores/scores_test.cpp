@@ -13,15 +13,7 @@ struct Score {
     const char* name;
     PixelScores (*of)(const Image& a, const Image& b, int threads);
     float alike, worst;
-    float rounding;           // of a pixel that is equal in both
-    double mirror_rounding;   // of the mean
-    double shifted, swapped;  // how far from `alike` the means of such pictures are at least
-    double hardly;            // and at most, for a shift by a ten-thousandth of a pixel
-
-    [[nodiscard]] double mean(const Image& a, const Image& b) const { return of(a, b, 2).mean().value(); }
-    [[nodiscard]] double off(const Image& a, const Image& b) const {
-        return std::abs(mean(a, b) - static_cast<double>(alike));
-    }
+    float rounding;  // of a pixel that is equal in both
 };
 
 template <Border border>
@@ -30,11 +22,11 @@ PixelScores ssimWith(const Image& a, const Image& b, int threads) {
 }
 
 const Score kScores[]{
-    {"SSIM", ssimWith<Border::kCutWindow>, 1.0f, -1.0f, 2e-6f, 2e-5, 0.1, 0.3, 1e-3},
-    {"SSIM with zeros around", ssimWith<Border::kZero>, 1.0f, -1.0f, 2e-6f, 2e-5, 0.1, 0.3, 1e-3},
+    {"SSIM", ssimWith<Border::kCutWindow>, 1.0f, -1.0f, 2e-6f},
+    {"SSIM with zeros around", ssimWith<Border::kZero>, 1.0f, -1.0f, 2e-6f},
     {"FLIP",
      [](const Image& a, const Image& b, int threads) { return flip(a, b, kFlipPixelsPerDegree, threads); },
-     0.0f, 1.0f, 0.0f, 1e-4, 0.1, 0.2, 1e-2}};
+     0.0f, 1.0f, 0.0f}};
 
 constexpr double kC1 = 1e-4, kC2 = 9e-4;
 
@@ -42,14 +34,11 @@ constexpr double kC1 = 1e-4, kC2 = 9e-4;
 double luminanceTerm(double a, double b) { return (2.0 * a * b + kC1) / (a * a + b * b + kC1); }
 
 // The score that the definition gives at a pixel, in float64 and with full two-dimensional filters.
-struct Known {
-    unsigned x, y;
-    double score;
-};
-void checkKnown(const PixelScores& scores, double tolerance, const std::vector<Known>& all) {
-    for (const Known& at : all) {
-        CHECK(static_cast<double>(scores.values[at.y * scores.size_px.x + at.x]) ==
-              doctest::Approx(at.score).epsilon(tolerance));
+using Places = std::vector<glm::uvec2>;
+void checkKnown(const PixelScores& scores, const Places& places, const std::vector<double>& known) {
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        CHECK(scores.values[places[i].y * scores.size_px.x + places[i].x] ==
+              doctest::Approx(known[i]).epsilon(1e-4));
     }
 }
 
@@ -68,20 +57,13 @@ double colourScore(double distance) {
                              : 0.95 + 0.05 * (difference - knee) / (kLargest - knee);
 }
 
-TEST_CASE("a score is the same from either side, in a mirror and on any number of threads") {
+TEST_CASE("a score is the same from either side and on any number of threads, and best if all is alike") {
     const Image a = makeWaves({50, 200}, 0.0), b = makeWaves({50, 200}, 0.3);
-    const auto mirror = [](const Image& image) {
-        return makePicture(image.size_px, [&](std::uint32_t x, std::uint32_t y) {
-            return colourOf(image, image.size_px.x - 1 - x, y);
-        });
-    };
     const Image black = makeFlat({12, 12}, glm::vec3(0.0f)), white = makeFlat({12, 12}, glm::vec3(1.0f));
     for (const Score& score : kScores) {
         CAPTURE(std::string(score.name));
-        const PixelScores forward = score.of(a, b, 1);
-        CHECK(these(forward.values, forward.values) ==
-              these(score.of(a, b, 3).values, score.of(b, a, 2).values));
-        CHECK(std::abs(score.mean(mirror(a), mirror(b)) - forward.mean().value()) < score.mirror_rounding);
+        const std::vector<float> forward = score.of(a, b, 1).values;
+        CHECK(these(forward, forward) == these(score.of(a, b, 3).values, score.of(b, a, 2).values));
         for (const auto& [one, other] :
              {std::pair(a, a), std::pair(white, makeFlat({12, 12}, glm::vec3(3.0f), 4)),
               std::pair(black, makeFlat({12, 12}, glm::vec3(-3.0f)))}) {
@@ -92,28 +74,17 @@ TEST_CASE("a score is the same from either side, in a mirror and on any number o
     }
 }
 
-TEST_CASE("a shift by one pixel and swapped eyes are detected, next to no shift is next to nothing") {
-    const Image left = makeWaves({64, 64}, 1.5);
-    for (const Score& score : kScores) {
-        CAPTURE(std::string(score.name));
-        CHECK(score.off(left, makeWaves({64, 64}, 0.5)) > score.shifted);
-        CHECK(score.off(left, makeWaves({64, 64}, -1.5)) > score.swapped);
-        CHECK(score.off(left, makeWaves({64, 64}, 1.5 + 1e-4)) < score.hardly);
-    }
-}
-
 TEST_CASE("a pixel that is not finite scores worst, alone, even if both pictures have it") {
     const Image a = makeFlat({20, 20}, glm::vec3(0.5f));
     for (const float bad : {kNan, kInfinity}) {
         Image b = a;
         setPixel(b, 3, 2, {0.5f, bad, 0.5f});
         for (const Score& score : kScores) {
+            const auto [least, most] = std::minmax(score.alike, score.worst);
             for (const PixelScores& scores : {score.of(a, b, 2), score.of(b, b, 2)}) {
                 CHECK(scores.values[2 * 20 + 3] == score.worst);
-                const float least = std::min(score.alike, score.worst),
-                            most = std::max(score.alike, score.worst);
                 for (const float value : scores.values) {
-                    CHECK((value >= least && value <= most + score.rounding));
+                    CHECK(value == within(least, most + score.rounding));
                 }
             }
         }
@@ -157,19 +128,13 @@ TEST_CASE("between flat pictures SSIM is the luminance term; an opposite pattern
 
 TEST_CASE("every pixel's SSIM is the definition's, which sees 11 by 11 pixels") {
     const Image waves = makeWaves({37, 70}, 0.0), moved = makeWaves({37, 70}, 0.8);
-    const PixelScores scores = ssim(waves, moved), with_zeros = ssim(waves, moved, Border::kZero);
     // Corners, borders, both sides of the boundary between two bands of rows, and the middle.
-    checkKnown(scores, 1e-4,
-               {{0, 0, 0.936256328},
-                {36, 69, 0.953579881},
-                {5, 0, 0.943520026},
-                {0, 30, 0.956750976},
-                {20, 63, 0.912343744},
-                {20, 64, 0.896779036},
-                {20, 59, 0.939115304},
-                {18, 35, 0.942502200}});
-    checkKnown(with_zeros, 1e-4,
-               {{0, 0, 0.964917965}, {36, 69, 0.971055345}, {5, 0, 0.965745809}, {0, 30, 0.961475773}});
+    const Places places{{0, 0}, {36, 69}, {5, 0}, {0, 30}, {20, 63}, {20, 64}, {20, 59}, {18, 35}};
+    checkKnown(ssim(waves, moved), places,
+               {0.936256328, 0.953579881, 0.943520026, 0.956750976, 0.912343744, 0.896779036, 0.939115304,
+                0.942502200});
+    checkKnown(ssim(waves, moved, Border::kZero), places,
+               {0.964917965, 0.971055345, 0.965745809, 0.961475773});
     const Image a = makeFlat({31, 31}, glm::vec3(0.5f));
     Image b = a;
     setPixel(b, 15, 15, glm::vec3(0.9f));
@@ -187,8 +152,6 @@ TEST_CASE("between flat pictures FLIP is their colours' difference, of any size"
     };
     // Black and white differ by 100 in lightness.
     CHECK(meanFlip({9, 9}, glm::vec3(0.0f), glm::vec3(1.0f)) ==
-          doctest::Approx(colourScore(100.0)).epsilon(1e-4));
-    CHECK(static_cast<double>(flipColourDifference(glm::vec3(0.0f), glm::vec3(1.0f))) ==
           doctest::Approx(colourScore(100.0)).epsilon(1e-4));
     // Encoded greys 0.5 and 0.55 have L* 53.389 and 58.165: below the knee.
     const double dark = 116.0 * std::cbrt(std::pow((0.5 + 0.055) / 1.055, 2.4)) - 16.0,
@@ -211,23 +174,13 @@ TEST_CASE("between flat pictures FLIP is their colours' difference, of any size"
 
 TEST_CASE("every pixel's FLIP is the paper's, and lies from 0 to 1 at every size and distance") {
     const Image a = makeWaves({33, 70}, 0.0), b = makeWaves({33, 70}, 0.9);
-    const PixelScores near = flip(a, b, 20.0), far = flip(a, b);
-    checkKnown(near, 1e-4,
-               {{0, 0, 0.5390366},
-                {32, 69, 0.5111377},
-                {16, 35, 0.5051623},
-                {3, 64, 0.5123770},
-                {20, 63, 0.3907326}});
-    checkKnown(far, 1e-4,
-               {{0, 0, 0.4991233},
-                {32, 69, 0.5331954},
-                {16, 35, 0.4503161},
-                {3, 64, 0.4495015},
-                {20, 63, 0.3438545}});
+    const Places places{{0, 0}, {32, 69}, {16, 35}, {3, 64}, {20, 63}};
+    checkKnown(flip(a, b, 20.0), places, {0.5390366, 0.5111377, 0.5051623, 0.5123770, 0.3907326});
+    checkKnown(flip(a, b), places, {0.4991233, 0.5331954, 0.4503161, 0.4495015, 0.3438545});
     for (const glm::uvec2 size_px : {glm::uvec2{1, 1}, {1, 40}, {17, 1}, {2, 3}, {16, 65}}) {
         for (const double ppd : {1.0, 5.0, 67.0, 300.0}) {
             const PixelScores scores = flip(makeWaves(size_px, 0.0), makeWaves(size_px, 3.0), ppd);
-            for (const float score : scores.values) { CHECK((score >= 0.0f && score <= 1.0f)); }
+            for (const float score : scores.values) { CHECK(score == within(0.0, 1.0)); }
         }
     }
 }
