@@ -18,9 +18,7 @@ TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
     }
 }
 
-TEST_CASE(
-    "a folder in memory has no more room than memory, one on a disk no more than that, and one that is not "
-    "there none") {
+TEST_CASE("a folder has no more room than its disk or memory, and one that is not there none") {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     CHECK(spaceIn(folder) <= std::filesystem::space(folder).available);
     CHECK(spaceIn(folder / "not there") == 0);

@@ -8,18 +8,8 @@ SUITE(picture_io) {
 // Every value differs from its neighbours; some lie outside 0 to 1.
 Image makeRamp(glm::uvec2 size_px, int channels) {
     Image image{size_px, channels, {}};
-    image.values.resize(image.pixelCount() * static_cast<std::size_t>(channels));
-    for (std::size_t i = 0; i < image.values.size(); ++i) {
-        image.values[i] = static_cast<float>(i) * 0.37f - 1.0f;
-    }
-    return image;
-}
-
-// Eighths are exact in float32; in steps of 1/255 they are not, so rounding shows.
-Image makeDisplay(glm::uvec2 size_px) {
-    Image image{size_px, 4, {}};
-    for (std::size_t i = 0; i < image.pixelCount() * 4; ++i) {
-        image.values.push_back(static_cast<float>(i % 9) / 8.0f);
+    for (std::size_t i = 0; i < image.pixelCount() * channels; ++i) {
+        image.values.push_back(static_cast<float>(i) * 0.37f - 1.0f);
     }
     return image;
 }
@@ -57,7 +47,10 @@ TEST_CASE_FIXTURE(AtWork, "a float picture comes back to the bit") {
 }
 
 TEST_CASE_FIXTURE(AtWork, "a display picture comes back opaque, each value the nearest of 255") {
-    const Image display = makeDisplay({16, 9}), rgb = selectChannels(display, 0, 3);
+    // Eighths are exact in float32; in steps of 1/255 they are not, so rounding shows.
+    Image display{{16, 9}, 4, {}};
+    for (int i = 0; i < 16 * 9 * 4; ++i) { display.values.push_back(static_cast<float>(i % 9) / 8.0f); }
+    const Image rgb = selectChannels(display, 0, 3);
     for (int channels : {1, 3}) {
         const Image image = selectChannels(display, 0, channels);
         writePnm(work.path / "a.ppm", image);
@@ -78,16 +71,16 @@ TEST_CASE_FIXTURE(AtWork, "a display picture comes back opaque, each value the n
 }
 
 TEST_CASE_FIXTURE(AtWork, "a write that fails leaves nothing") {
-    const Image image = makeRamp({4, 4}, 4);
-    CHECK_THROWS_AS(writePicture(work.path / "missing" / "a", PictureKind::kFloat, image), Error);
-    CHECK_THROWS_AS(writePicture(work.path / "missing" / "a", PictureKind::kDisplay, image), Error);
+    for (const PictureKind kind : {PictureKind::kFloat, PictureKind::kDisplay}) {
+        CHECK_THROWS_AS(writePicture(work.path / "missing" / "a", kind, makeRamp({4, 4}, 4)), Error);
+    }
     CHECK_THROWS_AS(writePicture(work.path / "a", PictureKind::kFloat, Image{{4, 4}, 4, {1.0f}}), Error);
     CHECK(work.isEmpty());
 }
 
 #ifdef BINOSPLAT_HAS_PNG
 
-TEST_CASE("colours of a picture with alpha are read as they are stored") {
+TEST_CASE_FIXTURE(AtWork, "colours of a picture with alpha are read as they are stored") {
     // One pixel: 200, 100, 50, and an alpha of 128.
     constexpr unsigned char kPng[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d,
                                       0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01,
@@ -95,10 +88,8 @@ TEST_CASE("colours of a picture with alpha are read as they are stored") {
                                       0x0d, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x38, 0x91, 0x62, 0xd4,
                                       0x00, 0x00, 0x05, 0x35, 0x01, 0xdf, 0x73, 0x62, 0xe3, 0xdb, 0x00, 0x00,
                                       0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
-    const Workplace folder;
-    std::ofstream(folder.path / "a.png", std::ios::binary)
-        .write(reinterpret_cast<const char*>(kPng), sizeof kPng);
-    const Image image = readPicture(folder.path / "a.png");
+    work.write("a.png", std::string(std::begin(kPng), std::end(kPng)));
+    const Image image = readPicture(work.path / "a.png");
     REQUIRE(image.values.size() == 4);
     CHECK(these(image.values[0], image.values[1], image.values[2]) == these(doctest::Approx(200.0 / 255.0),
                                                                             doctest::Approx(100.0 / 255.0),
@@ -106,23 +97,18 @@ TEST_CASE("colours of a picture with alpha are read as they are stored") {
 }
 
 #ifdef BINOSPLAT_OPENIMAGEIO
-TEST_CASE("a volume is no picture") {
+TEST_CASE_FIXTURE(AtWork, "a volume is no picture") {
     // DDS of 2x2x2 pixels of four bytes: size of the header, what it contains, height, width, bytes per row,
     // depth, mips, 11 unused words, the pixel format (size of its header, RGB with alpha, no code, bits,
     // masks), and the flag of a volume.
     constexpr std::array<std::uint32_t, 31> kHeader{
         124, 0x801007, 2,  2,    8, 2,  1,    0,      0,        0,          0,      0,        0, 0, 0, 0,
         0,   0,        32, 0x41, 0, 32, 0xff, 0xff00, 0xff0000, 0xff000000, 0x1008, 0x200000, 0, 0, 0};
-    const Workplace folder;
-    {
-        std::ofstream file(folder.path / "a.dds", std::ios::binary);
-        file.write("DDS ", 4).write(reinterpret_cast<const char*>(kHeader.data()), sizeof kHeader);
-        file << std::string(32, 'x');
-    }
-    const std::string message =
-        (folder.path / "a.dds").string() +
-        ": has 2x2x2 pixels of 4 channels, must be a flat picture of up to 2^30 values";
-    CHECK_THROWS_WITH_AS(readPicture(folder.path / "a.dds"), message.c_str(), Error);
+    const std::string header(reinterpret_cast<const char*>(kHeader.data()), sizeof kHeader);
+    work.write("a.dds", "DDS " + header + std::string(32, 'x'));
+    CHECK(errorOf([&] { (void)readPicture(work.path / "a.dds"); }) ==
+          (work.path / "a.dds").string() +
+              ": has 2x2x2 pixels of 4 channels, must be a flat picture of up to 2^30 values");
 }
 #endif
 
@@ -131,30 +117,23 @@ TEST_CASE("a volume is no picture") {
 TEST_CASE_FIXTURE(AtWork, "files that end early or are something else are errors") {
     writePfm(work.path / "a.pfm", makeRamp({8, 8}, 3));
     fs::resize_file(work.path / "a.pfm", fs::file_size(work.path / "a.pfm") - 1);
-    CHECK_THROWS_AS(readPicture(work.path / "a.pfm"), Error);
-    std::ofstream(work.path / "b.pfm") << "not an image";
-    CHECK_THROWS_AS(readPicture(work.path / "b.pfm"), Error);
-    std::ofstream(work.path / "huge.ppm") << "P6\n4000000000 4000000000\n255\nx";
-    CHECK_THROWS_AS(readPicture(work.path / "huge.ppm"), Error);
-    // Memory for what a header promises is not reserved before the file is known to contain it.
-    for (const char* header : {"PF\n30000 30000\n-1\n", "P6\n30000 30000\n255\n"}) {
-        const fs::path path = work.path / (header[1] == 'F' ? "promise.pfm" : "promise.ppm");
-        std::ofstream(path, std::ios::binary) << header << "xyz";
-        const std::string bytes = header[1] == 'F' ? "10800000000" : "2700000000";
-        CHECK_THROWS_WITH_AS(readPicture(path),
-                             (path.string() + ": ends after 3 of " + bytes + " bytes of pixels").c_str(),
-                             Error);
+    work.write("b.pfm", "not an image");
+    work.write("huge.ppm", "P6\n4000000000 4000000000\n255\nx");
+    for (const char* name : {"a.pfm", "b.pfm", "huge.ppm", "none.exr"}) {
+        CHECK_THROWS_AS(readPicture(work.path / name), Error);
     }
-    CHECK_THROWS_AS(readPicture(work.path / "none.exr"), Error);
+    const auto checkError = [&](const std::string& name, const std::string& bytes,
+                                const std::string& message) {
+        work.write(name, bytes);
+        CHECK(errorOf([&] { (void)readPicture(work.path / name); }) == (work.path / name).string() + message);
+    };
+    // Memory for what a header promises is not reserved before the file is known to contain it.
+    checkError("promise.pfm", "PF\n30000 30000\n-1\nxyz", ": ends after 3 of 10800000000 bytes of pixels");
+    checkError("promise.ppm", "P6\n30000 30000\n255\nxyz", ": ends after 3 of 2700000000 bytes of pixels");
     for (const char* name : {"p.png", "p.jpg", "p.pfm", "p.ppm"}) {
-        std::ofstream(work.path / name)
-            << "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
-        CHECK_THROWS_WITH_AS(
-            readPicture(work.path / name),
-            ((work.path / name).string() +
-             ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)")
-                .c_str(),
-            Error);
+        checkError(
+            name, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
+            ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)");
     }
 }
 

@@ -12,10 +12,6 @@ HeadMotion parse(const std::string& text, MotionAxes axes = MotionAxes::kOpenXr)
     return parseHeadMotion(text, "m.csv", axes);
 }
 
-void checkRefused(const std::string& text, const char* message) {
-    CHECK_THROWS_WITH_AS(parse(text), doctest::Contains(message), Error);
-}
-
 bool near(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-9; }
 
 glm::dvec3 forwardOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 0.0, 1.0); }
@@ -56,10 +52,10 @@ TEST_CASE("headers, blanks and comments are optional, and orientations are norma
           std::string(
               "\xef\xbb\xbf# a walk\r\n\r\n 0 ,\t1, 2,3 ,0,0,0,1 \r\n0.5,1,+2,3e0,0,0,0,1\r\n\r\n")}) {
         const HeadMotion motion = parse(text);
-        REQUIRE(motion.samples().size() == 2);
-        CHECK(motion.duration_s() == 0.5);
-        CHECK(near(motion.poseAt(0.0).position, {1.0, -2.0, -3.0}));
-        CHECK(glm::length(motion.poseAt(0.0).orientation) == doctest::Approx(1.0).epsilon(1e-15));
+        const Pose start = motion.poseAt(0.0);
+        CHECK(these(motion.samples().size(), motion.duration_s(), glm::length(start.orientation)) ==
+              these(2, 0.5, doctest::Approx(1.0).epsilon(1e-15)));
+        CHECK(near(start.position, {1.0, -2.0, -3.0}));
     }
     const double half = std::sqrt(0.5);
     const std::string values = fmt::format("0,0,0,0,{},{},0,0\n", half, half);
@@ -85,8 +81,10 @@ TEST_CASE("times are seconds or ticks, by their size or by the header") {
         CHECK(parse(name + (",x,y,z,qx,qy,qz,qw\n1000" + pose) + "3000" + pose).duration_s() ==
               doctest::Approx(seconds).epsilon(1e-12));
     }
-    checkRefused("1700000000000" + pose, "m.csv:1: time is 1700000000000");
-    checkRefused("1700000000000000000" + pose, "unit in a header");
+    for (const auto& [time, message] : {std::pair("1700000000000", "m.csv:1: time is 1700000000000"),
+                                        {"1700000000000000000", "unit in a header"}}) {
+        CHECK_THROWS_WITH_AS(parse(time + pose), doctest::Contains(message), Error);
+    }
 }
 
 SCRIPT(motion, "engine/setup/motion") {
@@ -137,8 +135,7 @@ TEST_CASE("a camera starts where it is put and moves in its own frame") {
 }
 
 TEST_CASE("a segment's frames are its samples, or at a rate, and its end is not one of them") {
-    const HeadMotion motion = parseHeadMotion(
-        "0,0,0,0,0,0,0,1\n0.5,1,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n2,3,0,0,0,0,0,1\n", "m", MotionAxes::kOpenXr);
+    const HeadMotion motion = parse("0,0,0,0,0,0,0,1\n0.5,1,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n2,3,0,0,0,0,0,1\n");
     using Times = std::vector<double>;
     CHECK(these(frameTimes(motion, {}, "m"), frameTimes(motion, {0.0, 1.0, {}}, "m"),
                 frameTimes(motion, {0.0, {}, 2.0}, "m")) ==
@@ -154,26 +151,13 @@ TEST_CASE("a segment's frames are its samples, or at a rate, and its end is not 
     CHECK_THROWS_AS(frameTimes(motion, {0.0, {}, 1e6}, "m"), Error);
 }
 
-TEST_CASE("the shared recording reads, and its wearer walks forward" * test::needsSharedData()) {
+TEST_CASE("the shared recording reads" * test::needsSharedData()) {
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }
     const HeadMotion motion = readHeadMotion(*data / "headmotion" / "User3.csv", MotionAxes::kUnity);
-    CHECK(these(motion.samples().size(), motion.duration_s()) ==
-          these(4597, doctest::Approx(76.5515291).epsilon(1e-9)));
-    // Whenever the head moves at 0.4 m/s or more, it moves along its line of sight rather than against it. If
-    // read in OpenXR's axes, the same recording would show somebody who walks backwards: it was made in
-    // Unity's.
-    double cosines = 0.0;
-    int count = 0;
-    for (double time_s = 0.0; time_s + 0.5 < motion.duration_s(); time_s += 0.05) {
-        const glm::dvec3 way = motion.poseAt(time_s + 0.5).position - motion.poseAt(time_s).position;
-        if (glm::length(way) < 0.2) { continue; }
-        cosines += glm::dot(glm::normalize(way), forwardOf(motion.poseAt(time_s + 0.25)));
-        ++count;
-    }
-    CHECK(count > 50);
-    CHECK(cosines / count > 0.3);
-    CHECK(motion.samples().front().world_from_head.position.z == doctest::Approx(0.09279076));
+    CHECK(these(motion.samples().size(), motion.duration_s(),
+                motion.samples().front().world_from_head.position.z) ==
+          these(4597, doctest::Approx(76.5515291).epsilon(1e-9), doctest::Approx(0.09279076)));
 }
 
 }  // SUITE(motion)

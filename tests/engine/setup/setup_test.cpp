@@ -12,22 +12,15 @@
 
 SUITE(setup) {
 
-fs::path writeFile(const fs::path& path, const std::string& text) {
-    writeText(path, text);
-    return path;
-}
-
-TEST_CASE_FIXTURE(AtWork,
-                  "a camera file is world-from-camera, its rows as they are written, and resizing an eye "
-                  "keeps what it sees") {
+TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, and resizing an eye keeps what it sees") {
     // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its
     // x axis is (0, 0, -1).
-    const auto cameras = readCameraFile(writeFile(work.path / "c.json", R"([
+    writeText(work.path / "c.json", R"([
         {"id": 0, "img_name": "a", "width": 640, "height": 480, "fx": 500, "fy": 510,
          "position": [1, 2, 3], "rotation": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]},
         {"id": 1, "width": 640, "height": 480, "fx": 500, "fy": 510, "cx": 300, "cy": 200,
-         "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])"),
-                                        glm::dvec3(0.0));
+         "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
+    const auto cameras = readCameraFile(work.path / "c.json", glm::dvec3(0.0));
     REQUIRE(cameras.size() == 2);
     const Eye& eye = cameras[0].eye;
     CHECK(these(cameras[0].name, cameras[1].name) == these("a", "1"));
@@ -41,8 +34,8 @@ TEST_CASE_FIXTURE(AtWork,
 }
 
 TEST_CASE_FIXTURE(AtWork, "a Git LFS pointer is named as what it is") {
-    const fs::path file = writeFile(work.path / "pointer",
-                                    "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+    const fs::path file = work.path / "pointer";
+    writeText(file, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
     const doctest::Contains said(": is a Git LFS pointer");
     CHECK_THROWS_WITH_AS((void)readSettingsFile(file), said, Error);
     CHECK_THROWS_WITH_AS((void)readCameraFile(file, glm::dvec3(0.0)), said, Error);
@@ -57,8 +50,7 @@ TEST_CASE("numbers are read whole") {
     }
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "output files appear together or not at all, and a run that fails keeps what was there") {
+TEST_CASE_FIXTURE(AtWork, "output files appear together, and a run that fails keeps what was there") {
     const fs::path folder = work.path / "a" / "b";
     const auto write = [&](const std::string& text, bool publishes) {
         OutputFiles files(folder);
@@ -74,8 +66,7 @@ TEST_CASE_FIXTURE(AtWork,
     CHECK(these(fs::file_size(folder / "one"), fs::file_size(folder / "two")) == these(1, 1));
 }
 
-TEST_CASE_FIXTURE(
-    AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
+TEST_CASE_FIXTURE(AtWork, "an output folder whose path is too long is refused, and nothing of it stays") {
     fs::path folder = work.path;
     constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, but 40 more letters do not
     while (folder.string().size() + 102 < kLength) { folder /= std::string(100, 'x'); }
@@ -88,9 +79,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(AtWork, "a folder is removed with all in it, and what its links lead to stays") {
     const fs::path kept = work.path / "kept", gone = work.path / "gone";
-    fs::create_directories(kept);
-    fs::create_directories(gone / "a" / "b");
     for (const fs::path& file : {kept / "1", gone / "1", gone / "a" / "2", gone / "a" / "b" / "3"}) {
+        fs::create_directories(file.parent_path());
         writeText(file, "x");
     }
     fs::create_directory_symlink(kept, gone / "a" / "link");
