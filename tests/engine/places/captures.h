@@ -1,5 +1,4 @@
-// Captures like people's own, each made here at a small size with the difficulties of its kind, and where the
-// viewer starts in them.
+// Captures like people's own, each made here at a small size with the difficulties of its kind.
 #pragma once
 
 #include "engine/builtin/procedural.h"
@@ -74,8 +73,7 @@ public:
     [[nodiscard]] const Scene& scene() const { return scene_; }
 
 private:
-    // Numbers are drawn one by one, since the order in which arguments are evaluated differs between
-    // processors.
+    // Numbers are drawn one by one: processors differ in the order in which they evaluate arguments.
     glm::dvec3 inUnitBox() {
         const double z = next(), y = next(), x = next();
         return {x, y, z};
@@ -110,7 +108,7 @@ inline Maker street() {
     return made.box({-3.5, -1.5, 2}, {-1.8, 0, 6}, 150.0);
 }
 
-// A head on a pedestal, with nothing around it.
+// A head on a pedestal.
 inline Maker statue() {
     return Maker().ball({0.2, -1.9, 0.1}, 0.4, 6000).box({0.0, -1.5, -0.1}, {0.4, -0.1, 0.3}, 1000.0);
 }
@@ -133,8 +131,7 @@ inline Maker garden() {
     return made.sized(2.0).ball({0, -5, 0}, 80.0, 12000);
 }
 
-// A scan on a desk, from all sides: the object, a piece of the desk, and the room around it as a distant,
-// thin shell.
+// A scan on a desk: the object, a piece of the desk, and the room around it as a distant, thin shell.
 inline Maker scannedToy() {
     return Maker()
         .sized(0.003)
@@ -145,8 +142,7 @@ inline Maker scannedToy() {
         .ball({0, -1, 0}, 4.0, 6000);
 }
 
-// Seen only from the front, as from a few photographs side by side: things on a table, and the wide wall
-// behind them.
+// Things on a table and the wide wall behind them, seen only from the front.
 inline Maker facingForward() {
     Maker made;
     for (const double x : {-0.8, 0.0, 0.7}) { made.ball({x, -0.3, 3.0 + 0.3 * x}, 0.25, 5000); }
@@ -169,7 +165,7 @@ inline Maker corridor() {
     return Maker().box({-1, -2.5, -8}, {1, 0, 8}, 150.0).box({0.5, -1, 3}, {1, 0, 4}, 1500.0);
 }
 
-// From a drone: blocks of houses on level ground.
+// From a drone.
 inline Maker town() {
     Maker made;
     made.sized(0.6).wall({-150, 0, -150}, {300, 0, 0}, {0, 0, 300}, 0.2, 0.5);

@@ -7,9 +7,7 @@
 SUITE(floor) {
 
 glm::dquat aboutAxis(int axis, double degrees) {
-    glm::dvec3 direction(0.0);
-    direction[axis] = 1.0;
-    return glm::angleAxis(glm::radians(degrees), direction);
+    return glm::angleAxis(glm::radians(degrees), glm::dmat3(1.0)[axis]);
 }
 
 // The axis of each turn, and degrees: none, up along z, along x, along y, and neither.
@@ -34,8 +32,7 @@ void checkTurned(const Scene& scene, bool is_inside,
     }
 }
 
-TEST_CASE(
-    "up, the height of the eye and the place within a room are the same whichever axis of the file is up") {
+TEST_CASE("up, eye height and place in a room are the same whichever axis of the file is up") {
     checkTurned(makeBuiltin("builtin:atelier", 20000), true, [](const glm::dvec3& eye) {
         CHECK(std::abs(-eye.y - 1.6) < 0.2);
         CHECK(std::abs(eye.x) < 2.8);
@@ -68,8 +65,7 @@ TEST_CASE("a facade is no ground: a wall with a relief, seen from the front, sta
     CHECK(point.view.eye.z < -3.0);
 }
 
-TEST_CASE(
-    "the axis that the file names as vertical is kept to; the floor says which way is up, or a format") {
+TEST_CASE("the axis that the file names as vertical is kept; the floor or a format says which way") {
     // On its own this would lie on its back.
     Scene scene = statueOnGround().scene();
     const auto upOf = [&](int vertical_axis, bool y_up) {
@@ -94,8 +90,7 @@ TEST_CASE("one stands beneath nothing: the floor is on the other side of cameras
     CHECK_FALSE(upBeneath(scene, {0, 0, 80}));
 }
 
-TEST_CASE(
-    "cameras that all look one way look down where no floor bears out their up, and ahead where one does") {
+TEST_CASE("cameras that all look one way look down, unless a floor bears out their up") {
     const auto beneath = [](const Scene& scene, const glm::dvec3& cameras, const glm::dvec3& their_up) {
         const std::optional<glm::dvec3> up = upBeneath(scene, cameras, their_up);
         return up ? degreesBetween(*up, kUp) : 180.0;

@@ -15,17 +15,12 @@ std::vector<glm::dvec4> samplesOf(const At& at) {
     return samples;
 }
 
-TEST_CASE("samples stay as they are, and a parabola is filled as one, up to the border") {
+TEST_CASE("a parabola is filled as one, up to the samples at the border") {
     const auto parabola = [](const glm::dvec2& place) {
         return glm::dvec4(0.3 + 0.02 * place.x - 0.001 * place.x * place.x + 0.003 * place.y,
                           0.1 + 0.002 * place.y * place.y, place);
     };
     const auto samples = samplesOf(parabola);
-    for (const glm::ivec2 corner :
-         {glm::ivec2(0, 0), glm::ivec2(15, 0), glm::ivec2(0, 15), glm::ivec2(15, 15)}) {
-        const glm::dvec4 sample = samples[static_cast<std::size_t>(corner.y / 15 * 56 + corner.x / 15 * 7)];
-        CHECK(glm::distance(reference::fillAt(samples, corner), sample) < 1e-12);
-    }
     for (int i = 0; i < 256; ++i) {
         const glm::ivec2 pixel(i % 16, i / 16);
         CHECK(glm::distance(reference::fillAt(samples, pixel), parabola(glm::dvec2(pixel))) < 1e-12);

@@ -55,9 +55,7 @@ std::complex<double> responseOf(const std::array<double, 6>& weights, double fre
 TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency stronger at any shift") {
     for (int step = 0; step <= 200; ++step) {
         const auto weights = sixTapWeights(step / 200.0);
-        double sum = 0.0;
-        for (const double weight : weights) { sum += weight; }
-        CHECK(sum == doctest::Approx(1.0).epsilon(1e-12));
+        CHECK(std::accumulate(weights.begin(), weights.end(), 0.0) == doctest::Approx(1.0).epsilon(1e-12));
         for (int wave = 0; wave <= 200; ++wave) {
             CHECK(std::abs(responseOf(weights, std::numbers::pi * wave / 200.0)) <= 1.0 + 1e-12);
         }
@@ -139,13 +137,10 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
 TEST_CASE("a tile's gradient is its picture's, and where it is low a bound allows less error") {
     const Eye eye = makeEye({96, 64});
     const auto ramp = [](double x, double y) { return glm::dvec3(0.004 * x, 0.003 * y, 0.5); };
-    const double expected = 256 * (0.004 * 0.004 + 0.003 * 0.003);
-    const Eye there = moved(eye, {0.01, 0.0, 0.0});
-    CHECK(warpHistory(makeHistory(eye, ramp, wall), there).picture.tiles[7].squared_gradient ==
-          doctest::Approx(expected));
-    CHECK(warpHistory(makeHistory(eye, ramp, bands), there).picture.tiles[7].squared_gradient ==
-          doctest::Approx(expected));
-
+    for (const History& history : {makeHistory(eye, ramp, wall), makeHistory(eye, ramp, bands)}) {
+        CHECK(warpHistory(history, moved(eye, {0.01, 0.0, 0.0})).picture.tiles[7].squared_gradient ==
+              doctest::Approx(256 * (0.004 * 0.004 + 0.003 * 0.003)));
+    }
     HistoryTile tile;
     tile.errors[2] = 0.03;
     const auto isOver = [&](double gradient) {
@@ -166,11 +161,11 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
     const WarpedHistory warped = warpHistory(history, moved(eye, {0.02, 0.0, 0.0}));
     for (std::size_t y = 0; y < 48; ++y) {
         const std::size_t row = 160 * y;
-        for (std::size_t x = 0; x < 78; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(1.0)); }
-        for (std::size_t x = 78; x < 80; ++x) { CHECK(warped.unseen[row + x] == 1); }
-        for (std::size_t x = 80; x < 160; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(0.1)); }
-        CHECK(std::count(warped.unseen.begin() + static_cast<int>(row),
-                         warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
+        for (std::size_t x = 0; x < 160; ++x) {
+            const bool is_unseen = x == 78 || x == 79;
+            CHECK(warped.unseen[row + x] == is_unseen);
+            if (!is_unseen) { CHECK(depthAt(warped, row + x) == doctest::Approx(x < 78 ? 1.0 : 0.1)); }
+        }
     }
     // What a silhouette uncovers is expected to resemble what is next to it; there are 16 such pixels in a
     // quarter of the tile.
@@ -191,12 +186,13 @@ TEST_CASE("nothing comes from where the history was hidden, and what is hidden n
     history.hidden = hidden;
     hidden[15] = 1;
     const WarpedHistory warped = warpHistory(history, moved(eye, {0.02, 0.0, 0.0}), hidden, {0.1, 0.2, 0.3});
-    CHECK(warped.picture.rgba[40 * 96 + 50] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
-    CHECK(warped.unseen[40 * 96 + 46] == 0);  // that tile was seen
-    CHECK(warped.picture.rgba[20 * 96 + 40] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
+    for (const std::size_t pixel : {40 * 96 + 50, 20 * 96 + 40}) {
+        CHECK(warped.picture.rgba[pixel] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
+    }
     CHECK_FALSE(warped.picture.pixels[20 * 96 + 40]);
-    CHECK(warped.unseen[20 * 96 + 31] == 1);  // its source is the neighbouring pixel
-    CHECK(warped.unseen[20 * 96 + 30] == 0);
+    // The first tile was seen; the source of the second pixel is the neighbouring one.
+    CHECK(these(warped.unseen[40 * 96 + 46], warped.unseen[20 * 96 + 31], warped.unseen[20 * 96 + 30]) ==
+          these(0, 1, 0));
 }
 
 TEST_CASE("the colour of what was hidden does not leak into the pixels beside it") {

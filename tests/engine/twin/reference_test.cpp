@@ -91,11 +91,10 @@ TEST_CASE("no pixel at which a splat is met is left out by cull, box, runs or bi
 TEST_CASE("the customary box of a disc that faces the eye is a square of 3 sigma") {
     // Sigma is 10.2 px, so the radius is ceil(30.6) = 31 about (50.5, 50.5): pixels 19.5 to 81.5, tiles 1 to
     // 5 in both directions.
-    const std::vector<std::uint32_t> both{0, 1};
+    const std::uint32_t both[] = {0, 1};
     const Scene scene = makeScene({{.scale = {0.204f, 0.1f}}, {.position = {0, 0, -2}}});
     const auto splats = reference::project(scene, both, makeEye(kSize), {});
-    CHECK(splats[0].square_box_tiles == 25);
-    CHECK(splats[1].square_box_tiles == 0);
+    CHECK(these(splats[0].square_box_tiles, splats[1].square_box_tiles) == these(25, 0));
 }
 
 TEST_CASE("a disc through the near plane keeps its front part and shows no mirror image") {
@@ -196,11 +195,10 @@ TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
 TEST_CASE("blending stops before transmittance falls under 1e-4") {
     // T: 1, 0.01, then 2e-4. The third layer would leave 2e-6 and closes the pixel, so the fourth is not
     // blended, although it would fit.
-    const auto layer = [](float z, float opacity) {
-        return Splat{.position = {0.0f, 0.0f, z}, .opacity = opacity};
-    };
-    const Picture picture =
-        render({layer(2.0f, 1.0f), layer(3.0f, 0.98f), layer(4.0f, 1.0f), layer(5.0f, 0.1f)});
+    const Picture picture = render({{.position = {0, 0, 2}, .opacity = 1.0f},
+                                    {.position = {0, 0, 3}, .opacity = 0.98f},
+                                    {.position = {0, 0, 4}, .opacity = 1.0f},
+                                    {.position = {0, 0, 5}, .opacity = 0.1f}});
     CHECK(rgbaAt(picture, 50, 50).w == near(1.0 - 0.01 * (1.0 - static_cast<double>(0.98f))));
 }
 
@@ -209,17 +207,18 @@ TEST_CASE("spherical harmonics have the signs scenes are trained with") {
     // 3 gives 2 * 0.37318 sh[12].
     const glm::vec3 ahead(0, 0, 2), right(2, 0, 2), down(0, 2, 2);
     const double root = std::sqrt(0.5);
-    const std::tuple<std::size_t, glm::vec3, double> known[] = {{0, ahead, 0.2820947918},
-                                                                {2, ahead, 0.4886025119},
-                                                                {6, ahead, 0.6307831305},
-                                                                {12, ahead, 0.7463526652},
-                                                                {3, right, -0.4886025119 * root},
-                                                                {1, down, -0.4886025119 * root},
-                                                                {7, right, -1.0925484306 * 0.5},
-                                                                {5, down, -1.0925484306 * 0.5},
-                                                                {8, right, 0.5462742153 * 0.5},
-                                                                {13, right, -0.4570457995 * 1.5 * root},
-                                                                {15, right, -0.5900435899 * 0.5 * root}};
+    using Known = std::tuple<std::size_t, glm::vec3, double>;
+    const Known known[] = {Known(0, ahead, 0.2820947918),
+                           Known(2, ahead, 0.4886025119),
+                           Known(6, ahead, 0.6307831305),
+                           Known(12, ahead, 0.7463526652),
+                           Known(3, right, -0.4886025119 * root),
+                           Known(1, down, -0.4886025119 * root),
+                           Known(7, right, -1.0925484306 * 0.5),
+                           Known(5, down, -1.0925484306 * 0.5),
+                           Known(8, right, 0.5462742153 * 0.5),
+                           Known(13, right, -0.4570457995 * 1.5 * root),
+                           Known(15, right, -0.5900435899 * 0.5 * root)};
     Scene scene = makeScene({{}});
     scene.sh_degree = 3;
     for (const auto& [coefficient, position, value] : known) {

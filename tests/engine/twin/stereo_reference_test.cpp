@@ -40,15 +40,13 @@ struct Moved {
 
 TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, what is more the last") {
     for (std::uint32_t code = 1; code <= 31; ++code) {
-        CHECK(spreadOf(code) == doctest::Approx(std::pow(2.0, (code - 1) / 2.0 - 13.0)));
-        CHECK(spreadCode(spreadOf(code)) == code);
-        CHECK(spreadCode(1.18 * spreadOf(code)) == code);
-        CHECK(spreadCode(0.85 * spreadOf(code)) == code);
+        const double spread = spreadOf(code);
+        CHECK(spread == doctest::Approx(std::pow(2.0, (code - 1) / 2.0 - 13.0)));
+        CHECK(these(spreadCode(spread), spreadCode(1.18 * spread), spreadCode(0.85 * spread)) ==
+              these(code, code, code));
     }
-    CHECK(spreadOf(31) == 4.0);
-    CHECK(spreadOf(0) == 0.0);
-    CHECK(spreadCode(1e9) == 31);
-    CHECK(spreadCode(std::numeric_limits<double>::infinity()) == 31);
+    CHECK(these(spreadOf(31), spreadOf(0), spreadCode(1e9),
+                spreadCode(std::numeric_limits<double>::infinity())) == these(4.0, 0.0, 31, 31));
     for (const double none : {0.0, -1.0, 1e-5, std::nan("")}) { CHECK(spreadCode(none) == 0); }
 }
 
