@@ -32,9 +32,7 @@ void setAge(const fs::path& file, int hours) {
     fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(hours));
 }
 
-TEST_CASE_FIXTURE(
-    Cached,
-    "a file that has not changed is sent once, and one that has takes the place of the one that was kept") {
+TEST_CASE_FIXTURE(Cached, "a file that has not changed is sent once, one that has is replaced") {
     std::atomic<int> unchanged = 0;
     const WebServer server(
         [&, old = withVersions(kPly), latest = withVersions(kOther)](const WebRequest& request) {
@@ -50,12 +48,9 @@ TEST_CASE_FIXTURE(
         checkSame(server.at("/a.ply"), &notes);
         CHECK(notes.stale.empty());
     }
-    CHECK(server.asked().size() == 3);
-    CHECK(unchanged == 2);
-    CHECK(filesKept() == 2);
+    CHECK(these(server.asked().size(), unchanged.load(), filesKept()) == these(3, 2, 2));
     checkSameScene(loadScene(folder.write("now.ply", kOther)), loadFromWeb(server.at("/a.ply"), settings));
-    CHECK(unchanged == 2);
-    CHECK(filesKept() == 2);
+    CHECK(these(unchanged.load(), filesKept()) == these(2, 2));
     CHECK(bytesIn(cache()) < kOther.size() + 1000);
 }
 
@@ -124,11 +119,7 @@ TEST_CASE_FIXTURE(Cached, "the cache keeps its limit, and what was used last") {
 TEST_CASE_FIXTURE(Cached, "without a folder for a cache nothing stays") {
     const WebServer server({{"/a.ply", kPly}});
     settings.cache_folder.clear();
-    const auto left = [] {
-        const auto names = filesIn(fs::temp_directory_path());
-        return std::ranges::count_if(
-            names, [](const std::string& name) { return name.starts_with("binosplat-web-"); });
-    };
+    const auto left = [] { return countSaying(filesIn(fs::temp_directory_path()), "binosplat-web-"); };
     const auto before = left();
     checkSame(server.at("/a.ply"));
     CHECK(left() == before);
@@ -150,14 +141,11 @@ TEST_CASE_FIXTURE(Cached, "a broken cache is one without the file") {
         checkSame(server.at("/a.ply"));
     }
     // What an interrupted program left is removed after a while; what another program is fetching is not.
-    (void)folder.write("cache/0-1-2.part", "old");
-    (void)folder.write("cache/0-1-3.part", "new");
-    (void)folder.write("cache/0.json", "{}");
+    for (const char* left : {"0-1-2.part", "0-1-3.part", "0.json"}) { std::ofstream(cache() / left) << "{}"; }
     setAge(cache() / "0-1-2.part", 2);
     checkSame(server.at("/a.ply"));
-    CHECK_FALSE(fs::exists(cache() / "0-1-2.part"));
-    CHECK_FALSE(fs::exists(cache() / "0.json"));
-    CHECK(fs::exists(cache() / "0-1-3.part"));
+    CHECK(these(fs::exists(cache() / "0-1-2.part"), fs::exists(cache() / "0.json"),
+                fs::exists(cache() / "0-1-3.part")) == these(false, false, true));
 }
 
 TEST_CASE_FIXTURE(Cached, "several at once use one cache, even one in which nothing may stay") {

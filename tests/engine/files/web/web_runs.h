@@ -22,16 +22,14 @@ inline Scene loadFromWeb(const std::string& address, const WebSettings& settings
     return loadSceneFromAnywhere(address, 0, notes != nullptr ? *notes : ignored, progress, level, settings);
 }
 
-// The message of the Error that it throws, which must be one line that begins with the address; empty if it
-// throws none.
+// The message of the Error that it throws, which must begin with the address; empty if it throws none.
 inline std::string webError(const std::string& address, const WebSettings& settings) {
     try {
         (void)loadFromWeb(address, settings);
     } catch (const Error& error) {
-        const std::string message = error.what();
         CHECK(error.code() == ExitCode::kBadInput);
-        CHECK(message.starts_with(address));
-        return message;
+        CHECK(std::string(error.what()).starts_with(address));
+        return error.what();
     }
     return {};
 }
@@ -47,16 +45,16 @@ struct OnWeb : InFolder {
     }
     // From an empty cache, after so many requests.
     void checkSame(const WebServer& server, std::size_t requests, LoadNotes* notes = nullptr) const {
-        std::filesystem::remove_all(settings.cache_folder);
+        fs::remove_all(settings.cache_folder);
         checkSame(server.at("/a.ply"), notes);
         CHECK(server.asked().size() == requests);
     }
 };
 
-inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
+inline std::vector<std::string> filesIn(const fs::path& folder) {
     std::vector<std::string> names;
     std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
         names.push_back(entry.path().filename().string());
     }
     std::ranges::sort(names);
@@ -64,19 +62,18 @@ inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
 }
 
 // Everything in a folder, by path after `prefix`.
-inline WebPages filesOf(const std::filesystem::path& folder, const std::string& prefix = "/") {
+inline WebPages filesOf(const fs::path& folder, const std::string& prefix = "/") {
     WebPages files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (!entry.is_regular_file()) { continue; }
-        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] =
-            textIn(entry.path());
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const std::string name = entry.path().lexically_relative(folder).generic_string();
+        if (entry.is_regular_file()) { files[prefix + name] = textIn(entry.path()); }
     }
     return files;
 }
 
-inline std::uint64_t bytesIn(const std::filesystem::path& folder) {
+inline std::uint64_t bytesIn(const fs::path& folder) {
     std::uint64_t sum = 0;
-    for (const std::string& name : filesIn(folder)) { sum += std::filesystem::file_size(folder / name); }
+    for (const std::string& name : filesIn(folder)) { sum += fs::file_size(folder / name); }
     return sum;
 }
 

@@ -21,8 +21,7 @@ struct WebRequest {
 
     // Empty if there is no header with that name.
     [[nodiscard]] std::string header(const std::string& name) const {
-        const auto found = headers.find(name);
-        return found != headers.end() ? found->second : "";
+        return headers.contains(name) ? headers.at(name) : "";
     }
 };
 
@@ -41,9 +40,8 @@ inline WebAnswer answer(const std::string& status, const std::string& headers = 
 // A server with these files, by path such as "/a/b.ply"; no others exist.
 using WebPages = std::map<std::string, std::string>;
 inline WebAnswer answerFrom(const WebPages& files, const WebRequest& request) {
-    const auto found = files.find(request.path);
-    return found != files.end() ? answer("200 OK", "", found->second)
-                                : answer("404 Not Found", "", "no such page");
+    return files.contains(request.path) ? answer("200 OK", "", files.at(request.path))
+                                        : answer("404 Not Found", "", "no such page");
 }
 
 class WebServer {
@@ -93,10 +91,7 @@ public:
         refuse();
         acceptor_.join();
         ::close(listener_);
-        {
-            const std::lock_guard lock(mutex_);
-            for (const Connection& connection : connections_) { ::shutdown(connection.socket, SHUT_RDWR); }
-        }
+        for (const Connection& connection : connections_) { ::shutdown(connection.socket, SHUT_RDWR); }
         for (Connection& connection : connections_) {
             connection.thread.join();
             ::close(connection.socket);
@@ -161,9 +156,7 @@ private:
             const std::size_t colon = line.find(": ");
             if (colon == std::string::npos) { continue; }
             std::string name = line.substr(0, colon);
-            std::ranges::transform(name, name.begin(), [](unsigned char letter) {
-                return static_cast<char>(std::tolower(letter));
-            });
+            for (char& letter : name) { letter = static_cast<char>(std::tolower(letter)); }
             request.headers[name] = line.substr(colon + 2, line.find('\r') - colon - 2);
         }
         return request;
