@@ -1,13 +1,10 @@
-// Facts about scene files that change while they are read; here they change when the reader reports its
-// progress.
+// Facts about scene files that change while they are read: here, when the reader reports its progress.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/files/read_ahead.h"
 #include "engine/files/spz.h"
 #include "tests/engine/files/hostile_scenes.h"
-#ifdef BINOSPLAT_SOG
 #include "tests/engine/files/sog_scenes.h"
-#endif
 
 #include <chrono>
 
@@ -46,9 +43,7 @@ std::vector<std::string> writeFiles(const Folder& folder) {
     return paths;
 }
 
-TEST_CASE(
-    "a file that is cut off, grows or is written to while it is read is refused; one that is removed or "
-    "replaced is read as it was") {
+TEST_CASE("a file that changes while it is read is refused, one removed or replaced is read as it was") {
     const Folder folder;
     for (const std::string change : {"cut", "grow", "write", "remove", "replace"}) {
 #ifdef _WIN32  // on Windows, a file that is open stays where it is
@@ -78,8 +73,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "blocks are read a little ahead of those that are taken, and whoever stops taking waits for nothing") {
+TEST_CASE("blocks are read a little ahead, and whoever stops taking them waits for nothing") {
     for (const int taken : {0, 1, 9, 40}) {
         int filled = 0;
         {

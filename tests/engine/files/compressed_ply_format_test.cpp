@@ -1,5 +1,4 @@
-// PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not match their
-// data.
+// PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not fit their data.
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/shared_data.h"
 
@@ -10,10 +9,9 @@ double shown(const Scene& scene, std::size_t at) {
 }
 
 TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
-    LoadNotes notes;
     // x: all 11 bits set; y: none of 10; z: all of 11.
     const CompressedPly packed{.splats = 257, .position = 0x7ffu << 21 | 0x7ffu, .colour = 0xff0080ffu};
-    const Scene scene = loadScene(folder.write("a.ply", packed.bytes()), 0, &notes);
+    const auto [notes, scene] = readScene(folder.write("a.ply", packed.bytes()));
     REQUIRE(scene.size() == 257);
     CHECK(these(scene.positions[0], scene.positions[255], scene.positions[256]) ==
           these(glm::vec3(1.0f, -2.0f, 8.0f), glm::vec3(1.0f, -2.0f, 8.0f), glm::vec3(2.0f, -2.0f, 8.0f)));
@@ -65,10 +63,10 @@ TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsS
     REQUIRE(scene.size() == 90854);
     CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
     CHECK(glm::distance(scene.positions[300], {-0.4802096f, -4.1130406f, -0.0136646f}) < 1e-6f);
-    CHECK(std::min(scene.scales[300].x, scene.scales[300].y) == doctest::Approx(0.0022113659));
-    CHECK(std::max(scene.scales[300].x, scene.scales[300].y) == doctest::Approx(0.0109744594));
-    CHECK(scene.opacities[300] == doctest::Approx(0.9450980));
-    CHECK(shown(scene, 3 * 300) == doctest::Approx(0.0945961));
+    const auto [least, most] = std::minmax(scene.scales[300].x, scene.scales[300].y);
+    CHECK(these(least, most, scene.opacities[300], shown(scene, 3 * 300)) ==
+          these(doctest::Approx(0.0022113659), doctest::Approx(0.0109744594), doctest::Approx(0.9450980),
+                doctest::Approx(0.0945961)));
     CHECK(glm::distance(scene.positions[90853], {0.4553929f, -0.6415753f, 0.7538047f}) < 1e-6f);
     CHECK(notes.median_flatness == between(0.0, 1.0));
 }
@@ -87,16 +85,15 @@ TEST_CASE_FIXTURE(InFolder, "a comment asks for antialiasing here, too; absurd c
     std::string many = replaced(good, "element chunk 2", "element chunk 72057594037927936");
     many = replaced(replaced(many, "element vertex 300", "element vertex 18446744073709551615"),
                     "element sh 300", "element sh 18446744073709551615");
-    CHECK(contains(loadError(folder, many), "bytes are left for 72057594037927936 chunks"));
+    checkError("bytes are left for 72057594037927936 chunks", folder, many);
 }
 
 TEST_CASE_FIXTURE(InFolder, "chunks with bounds that are no numbers lose their splats alone") {
     std::string bytes = CompressedPly{.splats = 257}.bytes();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(bytes.data() + bytes.find("end_header\n") + 11, &nan, sizeof(nan));
-    LoadNotes notes;
-    CHECK(loadScene(folder.write("a.ply", bytes), 0, &notes).size() == 1);
-    CHECK(notes.skipped_not_finite == 256);
+    const auto [notes, scene] = readScene(folder.write("a.ply", bytes));
+    CHECK(these(scene.size(), notes.skipped_not_finite) == these(1, 256));
 }
 
 }  // SUITE(compressed_ply_format)

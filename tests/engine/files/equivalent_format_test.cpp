@@ -93,15 +93,14 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
     }
 }
 
-TEST_CASE(
-    "scenes of every format that is read go through every format that is written, as the same pictures" *
-    needsSharedData()) {
+TEST_CASE("scenes of every format that is read are the same pictures in every format that is written" *
+          needsSharedData()) {
     checkFormats({"formats/minimal.ksplat", "formats/minimal.splat", "playbot/playbot_streamed",
                   "formats/khr_extensible_fallback.gltf"},
                  {{0.8, -0.5, 0.5}});
 }
 
-TEST_CASE("larger scenes go through every format that is written, as the same pictures from three sides" *
+TEST_CASE("larger scenes are the same pictures from three sides in every format that is written" *
           needsSharedData() * nightly()) {
     checkFormats({"guitar/guitar.compressed.ply", "statues/angel.sog", "statues/angel_2dgs_sh0.ply",
                   "playbot/playbot_streamed", "playbot/playbot_lod2_2dgs_sh2.ply",

@@ -14,12 +14,12 @@ inline constexpr int kGltfInt8 = 5120, kGltfUint8 = 5121, kGltfInt16 = 5122, kGl
 
 class GltfText {
 public:
+    static inline const std::string kPrefix = "KHR_gaussian_splatting:";
     std::string extension = R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display"})",
                 nodes = R"([{"mesh":0}])", roots = "[0]", other_primitives, other_keys;
     int mode = 0;
 
-    // Adds an attribute to the splats' primitive; an attribute of the extension is given by the end of its
-    // name.
+    // Adds an attribute to the splats' primitive; one of the extension is given by the end of its name.
     void add(const std::string& name, const std::string& type, std::vector<double> values,
              int component = kGltfFloat, bool normalized = false) {
         const std::size_t width = type == "SCALAR" ? 1 : type == "VEC3" ? 3 : 4;
@@ -29,16 +29,15 @@ public:
         for (const double value : values) {
             appendTyped(binary_, types[component - kGltfInt8], value, Encoding::kLittle);
         }
-        const std::size_t index = views_.size();
+        const bool is_own = name == "POSITION" || name == "COLOR_0";
+        const std::size_t index = attributes_[is_own ? name : kPrefix + name] = views_.size();
         views_.push_back(
             fmt::format(R"({{"buffer":0,"byteOffset":{},"byteLength":{}}})", begin, binary_.size() - begin));
         accessors_.push_back(fmt::format(R"({{"bufferView":{},"componentType":{},"count":{},"type":"{}"{}}})",
                                          index, component, values.size() / width, type,
                                          normalized ? R"(,"normalized":true)" : ""));
-        const bool is_own = name == "POSITION" || name == "COLOR_0";
-        attributes_[(is_own ? "" : "KHR_gaussian_splatting:") + name] = index;
     }
-    void remove(const std::string& name) { attributes_.erase(name); }
+    void remove(const std::string& name) { attributes_.erase(kPrefix + name); }
 
     [[nodiscard]] const std::string& binary() const { return binary_; }
     // `buffer` describes the only buffer, without its length.
@@ -101,7 +100,7 @@ inline GltfText makeGltf(int rest_count = 9) {
         }
         return values;
     };
-    const auto same = [](double value) { return value; };
+    const std::identity same;
     gltf.add("POSITION", "VEC3", gather({"x", "y", "z"}, same));
     gltf.add("ROTATION", "VEC4", gather({"rot_1", "rot_2", "rot_3", "rot_0"}, same));
     gltf.add("SCALE", "VEC3",

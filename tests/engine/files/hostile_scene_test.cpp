@@ -4,10 +4,8 @@
 #include "tests/engine/files/hostile_files.h"
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/engine/files/ksplat_files.h"
-#include "tests/engine/scene/scene_measures.h"
-#ifdef BINOSPLAT_SOG
 #include "tests/engine/files/streamed_scenes.h"
-#endif
+#include "tests/engine/scene/scene_measures.h"
 
 SUITE(hostile_scene) {
 
@@ -48,11 +46,9 @@ std::vector<Target> sceneTargets() {
         {"compressed PLY", packed, 1500, packed.find("end_header"), packed.find("end_header") + 12});
     targets.push_back({.name = ".splat", .good = makeSplatFile(), .must_be_whole = false});
     for (const int level : {0, 1, 2}) {
-        KsplatText text;
-        text.level = level;
-        text.degrees = {1, 2};
         // Most of a header is empty, so the rest is attacked.
-        const Target whole{.name = fmt::format(".ksplat {}", level), .good = text.bytes()};
+        const Target whole{.name = fmt::format(".ksplat {}", level),
+                           .good = KsplatText{.level = level, .degrees = {1, 2}}.bytes()};
         for (const std::size_t begin : {0, 4096, 4096 + 1024}) {
             targets.push_back(partOf(whole, begin, begin + 44));
         }

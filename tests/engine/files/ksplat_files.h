@@ -65,20 +65,15 @@ private:
         for (int i = 0; i < kSplats; ++i) {
             for (int axis = 0; axis < 3; ++axis) {
                 const double place = coordinate(section, i, axis);
-                if (level == 0) {
-                    number(place);
-                } else {
-                    const double steps = (place - bucketCentre(section, i / 2, axis)) * 32767.0 / 5.0;
-                    appendLittle(data, "ushort", {std::round(steps) + 32767.0});
-                }
+                const double steps = (place - bucketCentre(section, i / 2, axis)) * 32767.0 / 5.0;
+                level == 0 ? number(place) : appendLittle(data, "ushort", {std::round(steps) + 32767.0});
             }
             for (int axis = 0; axis < 3; ++axis) { number(scale(i, axis)); }
             for (const double part : {0.5, -0.5, 0.5, i == 0 ? -0.5 : 0.5}) { number(part); }
             for (const int byte : {51 * i, 255 - 51 * i, 102, 255 - 51 * i}) {
                 data += static_cast<char>(byte);
             }
-            const int degree = degrees[static_cast<std::size_t>(section)];
-            for (int band = 1; band <= degree; ++band) {
+            for (int band = 1; band <= degrees[section]; ++band) {
                 for (int channel = 0; channel < 3; ++channel) {
                     for (int k = band * band; k < (band + 1) * (band + 1); ++k) {
                         const double value = harmonic(i, k, channel);

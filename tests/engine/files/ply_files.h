@@ -22,7 +22,7 @@ public:
         return file(name);
     }
     [[nodiscard]] std::ptrdiff_t fileCount() const {
-        return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
+        return std::distance(fs::directory_iterator(path_), {});
     }
 
 private:
@@ -37,8 +37,7 @@ enum class Encoding { kAscii, kLittle, kBig };
 inline constexpr Encoding kEncodings[] = {Encoding::kAscii, Encoding::kLittle, Encoding::kBig};
 
 struct Column {
-    std::string name;
-    std::string type;
+    std::string name, type;
     std::vector<double> values;
 };
 
@@ -88,11 +87,8 @@ struct PlyText {
         text += fmt::format("element vertex {}\n", rows);
         for (const Column& column : columns) { text += "property " + column.type + " " + column.name + "\n"; }
         text += header_after + "end_header\n";
-        if (line_break != "\n") {
-            for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;
-                 at += line_break.size()) {
-                text.replace(at, 1, line_break);
-            }
+        for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += line_break.size()) {
+            text.replace(at, 1, line_break);
         }
         text += data_before;
         for (std::size_t row = 0; row < rows; ++row) {
@@ -103,14 +99,17 @@ struct PlyText {
         }
         return text + data_after;
     }
+    void add(const std::string& name, const std::string& type, const std::vector<double>& values) {
+        columns.push_back({name, type, values});
+    }
+    // Makes the scene one of so many splats; new ones are like the first.
+    void resize(std::size_t rows) {
+        for (Column& column : columns) { column.values.resize(rows, column.values[0]); }
+    }
     Column& operator[](const std::string& name) {
-        const auto found = std::find_if(columns.begin(), columns.end(),
-                                        [&](const Column& column) { return column.name == name; });
+        const auto found = std::ranges::find(columns, name, &Column::name);
         REQUIRE(found != columns.end());
         return *found;
-    }
-    void remove(const std::string& name) {
-        std::erase_if(columns, [&](const Column& column) { return column.name == name; });
     }
 };
 
@@ -118,7 +117,7 @@ struct PlyText {
 inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
     PlyText ply;
     const auto add = [&](const std::string& name, double a, double b, double c) {
-        ply.columns.push_back({name, "float", {a, b, c}});
+        ply.add(name, "float", {a, b, c});
     };
     add("x", 1.0, 2.0, -3.0);
     add("y", 0.5, 0.25, 0.125);
@@ -143,6 +142,12 @@ inline std::string loadError(const std::string& source, std::uint64_t splats = 0
 inline std::string loadError(const Folder& folder, const std::string& bytes) {
     return loadError(folder.write("broken.ply", bytes));
 }
+// What `loadError` gives contains this part.
+template <typename... Source>
+void checkError(const std::string& part, const Source&... source) {
+    const std::string error = loadError(source...);
+    CHECK_MESSAGE(contains(error, part), "'", error, "' should contain '", part, "'");
+}
 
 // `action` reports progress from 0 to 1 at least this often, and stops when the callback throws.
 inline void checkProgress(std::size_t times, const std::function<void(const Progress&)>& action) {
@@ -164,6 +169,11 @@ inline void checkProgress(std::size_t times, const std::function<void(const Prog
 inline void checkSays(const std::vector<std::string>& lines, const std::string& part) {
     REQUIRE(lines.size() == 1);
     CHECK_MESSAGE(contains(lines[0], part), lines[0]);
+}
+
+// How many lines contain this part.
+inline std::ptrdiff_t countSaying(const std::vector<std::string>& lines, const std::string& part) {
+    return std::ranges::count_if(lines, [&](const std::string& line) { return contains(line, part); });
 }
 
 // A scene, and the notes about it.

@@ -1,5 +1,5 @@
-// PLY files as other programs write them: what is read from each, what the notes say about it, and which are
-// not scenes.
+// PLY files as other programs write them: what is read from each, what is told of it, and which are no
+// scenes.
 #include "tests/engine/scene/scene_measures.h"
 
 SUITE(ply_of_others) {
@@ -8,31 +8,31 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST_CASE_FIXTURE(InFolder, "properties come in any order, of any type, among others") {
     const Scene expected = loadScene(folder.write("plain.ply", makePly(9).bytes()));
-    std::uint32_t state = 1;
+    std::mt19937 random(1);
     for (int round = 0; round < 12; ++round) {
         PlyText ply = makeIn(kEncodings[round % 3], 9);
         for (std::size_t i = ply.columns.size(); i > 1; --i) {
-            state = state * 1664525u + 1013904223u;
-            std::swap(ply.columns[i - 1], ply.columns[state % i]);
+            std::swap(ply.columns[i - 1], ply.columns[random() % i]);
         }
         for (const char* name : {"x", "f_rest_3", "rot_1", "opacity"}) {
             ply[name].type = round % 2 == 0 ? "double" : "float64";
         }
-        for (const auto& [name, type] :
-             {std::pair("f_rest_0", "short"), std::pair("f_rest_1", "uint16"), std::pair("f_rest_2", "int32"),
-              std::pair("z", "uchar"), std::pair("scale_0", "int8"), std::pair("rot_2", "char"),
-              std::pair("rot_0", "uint")}) {
+        for (const auto& [name, type] : {std::pair("f_rest_0", "short"),
+                                         {"f_rest_1", "uint16"},
+                                         {"f_rest_2", "int32"},
+                                         {"z", "uchar"},
+                                         {"scale_0", "int8"},
+                                         {"rot_2", "char"},
+                                         {"rot_0", "uint"}}) {
             ply[name].type = type;
         }
         ply.columns.insert(ply.columns.begin() + round, {"red", "uchar", {255.0, 0.0, 17.0}});
-        ply.columns.push_back({"confidence", "ushort", {1.0, 2.0, 3.0}});
+        ply.add("confidence", "ushort", {1.0, 2.0, 3.0});
         checkSameScene(loadScene(folder.write("shuffled.ply", ply.bytes())), expected);
     }
 }
 
-TEST_CASE(
-    "other elements are passed over, with and without lists, before and after the splats, as are line breaks "
-    "of Windows") {
+TEST_CASE("elements before and after the splats and line breaks of Windows are passed over") {
     const Folder folder;
     const Scene expected = loadScene(folder.write("plain.ply", makePly().bytes()));
     for (const Encoding encoding : kEncodings) {
@@ -41,9 +41,8 @@ TEST_CASE(
         checkSameScene(loadScene(folder.write("windows.ply", ply.bytes())), expected);
         ply.line_break = "\n";
         ply.header_before =
-            "element camera 2\nproperty float a\nproperty uchar b\nelement strip 2\nproperty list uchar int "
-            "index\nproperty double "
-            "w\nelement none 5\n";
+            "element camera 2\nproperty float a\nproperty uchar b\n"
+            "element strip 2\nproperty list uchar int index\nproperty double w\nelement none 5\n";
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
         const std::string line_end = encoding == Encoding::kAscii ? "\n" : "";
         for (const double row : {1.0, 2.0}) {
@@ -70,52 +69,43 @@ TEST_CASE_FIXTURE(InFolder, "a comment names the vertical axis, and writing keep
                                         {"comment Vertical axis:\n", -1},
                                         {"comment the Vertical axis: z\n", -1}}) {
         CAPTURE(comment);
-        LoadNotes notes;
-        const Scene scene = loadScene(
-            folder.write("said.ply", replaced(makePly(0).bytes(), "comment made for a test\n", comment)), 0,
-            &notes);
+        const std::string said = replaced(makePly(0).bytes(), "comment made for a test\n", comment);
+        const auto [notes, scene] = readScene(folder.write("said.ply", said));
         CHECK(scene.vertical_axis == axis);
         CHECK(writtenAndRead(folder, scene).vertical_axis == axis);
         CHECK(notes.axes == (axis < 0 ? "" : fmt::format("{} is vertical (named by the file)", "xyz"[axis])));
     }
 }
 
-TEST_CASE_FIXTURE(InFolder,
-                  "a PLY that looks as if its activations had been applied is loaded as usual, with one line "
-                  "that says so") {
+TEST_CASE_FIXTURE(InFolder, "a PLY that looks as if its activations had been applied is told of") {
     for (const bool three_scales : {false, true}) {
         PlyText ply = makePly(0, three_scales);
         ply["opacity"].values = {0.0, 1.0, 0.5};
         ply["scale_0"].values = {0.01, 0.5, 2.0};
         ply["scale_1"].values = {0.02, 0.5, 1e-6};
         if (three_scales) { ply["scale_2"].values = {0.001, 0.1, 3.0}; }
-        for (Column& column : ply.columns) { column.values.resize(700, column.values[0]); }
-        const auto linesOf = [&] {
-            LoadNotes notes;
-            CHECK(loadScene(folder.write("applied.ply", ply.bytes()), 0, &notes).size() == 700);
-            return std::ranges::count_if(
-                notes.lines, [](const std::string& line) { return contains(line, "activations applied"); });
+        ply.resize(700);
+        const auto checkLines = [&](const PlyText& text, int lines) {
+            const auto [notes, scene] = readScene(folder.write("applied.ply", text.bytes()));
+            CHECK(these(scene.size(), countSaying(notes.lines, "activations applied"), scene.opacities[1]) ==
+                  these(700, lines, doctest::Approx(1.0 / (1.0 + std::exp(-1.0)))));
         };
-        CHECK(linesOf() == 1);
-        CHECK(loadScene(folder.file("applied.ply")).opacities[1] ==
-              doctest::Approx(1.0 / (1.0 + std::exp(-1.0))));
-        for (const auto& [name, usual] :
-             {std::pair("opacity", 1.01), std::pair("opacity", -0.01), std::pair("scale_1", 0.0)}) {
-            const double before = std::exchange(ply[name].values[650], usual);  // one splat in the last block
-            CHECK(linesOf() == 0);
-            ply[name].values[650] = before;
+        checkLines(ply, 1);
+        for (const auto& [name, usual] : {std::pair("opacity", 1.01), {"opacity", -0.01}, {"scale_1", 0.0}}) {
+            PlyText other = ply;
+            other[name].values[650] = usual;  // one splat in the last block
+            checkLines(other, 0);
         }
     }
 }
 
-TEST_CASE_FIXTURE(InFolder,
-                  "a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
+TEST_CASE_FIXTURE(InFolder, "a byte order mark, CloudCompare's names and SH of degree 4 are no hindrance") {
     LoadNotes notes;
     const Scene plain = loadScene(folder.write("plain.ply", makePly(45, true).bytes()));
     checkSameScene(loadScene(folder.write("marked.ply", "\xef\xbb\xbf" + makePly(45, true).bytes())), plain);
     PlyText renamed = makePly(45, true);
     for (Column& column : renamed.columns) { column.name.insert(0, column.name.size() > 2 ? "scalar_" : ""); }
-    renamed.columns.push_back({"scalar_x", "float", {7.0, 8.0, 9.0}});  // this is not the position
+    renamed.add("scalar_x", "float", {7.0, 8.0, 9.0});  // this is not the position
     checkSameScene(loadScene(folder.write("renamed.ply", renamed.bytes()), 0, &notes), plain);
     CHECK(notes.lines.empty());
     // The first 15 of each channel's 24 values.
@@ -129,8 +119,7 @@ TEST_CASE_FIXTURE(InFolder,
     checkSays(notes.lines, "larger.ply: SH of degree 4 were left out, degree 3 is kept");
 }
 
-TEST_CASE_FIXTURE(
-    InFolder, "positions of float64 far from 0 keep their detail, and are written back to where they were") {
+TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, read and written") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding, 9, true);
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "double"; }
@@ -140,8 +129,7 @@ TEST_CASE_FIXTURE(
         const auto [notes, scene] = readScene(folder.write("far.ply", ply.bytes()));
         CHECK(scene.origin == glm::dvec3(431250.0, -5412000.0, 0.0));
         checkSays(notes.lines, "count from 431250,-5412000,0");
-        writePly(scene, folder.file("again.ply"));
-        const Scene again = loadScene(folder.file("again.ply"));
+        const Scene again = writtenAndRead(folder, scene);
         CHECK(these(again.origin, again.rotations, again.sh) ==
               these(scene.origin, scene.rotations, scene.sh));
         REQUIRE(again.size() == 3);
@@ -164,15 +152,14 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(InFolder,
-                  "of splats that move and fade the still of one moment is shown, and a note says which") {
+TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one moment is shown") {
     const auto load = [&](const PlyText& ply, const std::string& note) {
         const auto [notes, scene] = readScene(folder.write("moving.ply", ply.bytes()));
         checkSays(notes.lines, note);
         return scene;
     };
     const auto with = [](PlyText ply, const std::string& name, double a, double b, double c) {
-        ply.columns.push_back({name, "float", {a, b, c}});
+        ply.add(name, "float", {a, b, c});
         return ply;
     };
     for (const Encoding encoding : kEncodings) {
@@ -212,29 +199,28 @@ TEST_CASE_FIXTURE(InFolder,
                    loadScene(folder.write("still.ply", makePly().bytes())));
 }
 
-TEST_CASE_FIXTURE(
-    InFolder,
-    "a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
+TEST_CASE_FIXTURE(InFolder, "a point cloud or a mesh is named, with where a training leaves its splats") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply;
         ply.encoding = encoding;
-        for (const char* name : {"x", "y", "z"}) { ply.columns.push_back({name, "float", {1.0, 2.0}}); }
-        const auto error = [&] { return loadError(folder.write("points3D.ply", ply.bytes())); };
-        CHECK(contains(error(), "points3D.ply: a point cloud (2 points), not a splat scene"));
-        for (const char* name : {"nx", "ny", "nz"}) { ply.columns.push_back({name, "float", {0.0, 1.0}}); }
-        for (const char* name : {"red", "green", "blue"}) {
-            ply.columns.push_back({name, "uchar", {0.0, 255.0}});
-        }
-        CHECK(contains(error(), "a point cloud (2 points, with colours, with normals)"));
-        CHECK(contains(error(), "point_cloud/iteration_N/point_cloud.ply"));
+        const auto add = [&](const std::vector<std::string>& names, const char* type, double second) {
+            for (const std::string& name : names) { ply.add(name, type, {0.0, second}); }
+        };
+        const auto check = [&](const char* part) { checkError(part, folder, ply.bytes()); };
+        add({"x", "y", "z"}, "float", 2.0);
+        check("broken.ply: a point cloud (2 points), not a splat scene");
+        add({"nx", "ny", "nz"}, "float", 1.0);
+        add({"red", "green", "blue"}, "uchar", 255.0);
+        check("a point cloud (2 points, with colours, with normals)");
+        check("point_cloud/iteration_N/point_cloud.ply");
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
-        CHECK(contains(error(), "a mesh (2 vertices, with colours, with normals)"));
-        ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks everything else
-        CHECK(contains(error(), "no property f_dc_0"));
+        check("a mesh (2 vertices, with colours, with normals)");
+        add({"opacity"}, "float", 1.0);  // a splat scene that lacks everything else
+        check("no property f_dc_0");
     }
     PlyText anchors = makePly();
-    anchors.columns.push_back({"f_anchor_feat_0", "float", {0.0, 1.0, 2.0}});
-    CHECK(contains(loadError(folder, anchors.bytes()), "broken.ply: anchors of Scaffold-GS"));
+    anchors.add("f_anchor_feat_0", "float", {0.0, 1.0, 2.0});
+    checkError("broken.ply: anchors of Scaffold-GS", folder, anchors.bytes());
 }
 
 }  // SUITE(ply_of_others)

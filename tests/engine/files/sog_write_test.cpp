@@ -10,7 +10,7 @@ SUITE(sog_write) {
 Scene throughSog(const Folder& folder, const Scene& scene, LoadNotes* notes = nullptr) {
     writeSog(scene, folder.file("a.sog"));
     Scene back = loadScene(folder.file("a.sog"), 0, notes);
-    std::filesystem::remove(folder.file("a.sog"));
+    fs::remove(folder.file("a.sog"));
     return back;
 }
 
@@ -91,9 +91,7 @@ TEST_CASE("a palette's rows come nearer to the harmonics the more there are") {
     CHECK(before < 1e-9);  // each has its own entry
 }
 
-TEST_CASE_FIXTURE(
-    InFolder,
-    "writing and reading back keeps every attribute within its quantum, along a curve through the scene") {
+TEST_CASE_FIXTURE(InFolder, "writing keeps every attribute within its quantum, along a curve") {
     for (const int degree : {0, 1, 3}) {
         CAPTURE(degree);
         const Scene scene = randomScene(degree, 5000);
@@ -102,11 +100,8 @@ TEST_CASE_FIXTURE(
         writeSog(scene, folder.file("a.sog"));
         CHECK(folder.fileCount() == 1);
         const auto [notes, back] = readScene(folder.file("a.sog"));
-        REQUIRE(back.size() == scene.size());
-        REQUIRE(back.sh_degree == degree);
-        REQUIRE(back.isGaussian3d());
-        CHECK_FALSE(back.antialiased);
-        CHECK(notes.lines.empty());
+        REQUIRE(these(back.size(), back.sh_degree, back.isGaussian3d()) == these(scene.size(), degree, true));
+        CHECK(these(back.antialiased, notes.lines.empty()) == these(false, true));
         float position = 0.0f, opacity = 0.0f;
         double shape = 0.0;
         for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -132,13 +127,11 @@ TEST_CASE_FIXTURE(
         // The same scene gives the same file.
         writeSog(scene, folder.file("b.sog"));
         CHECK(textIn(folder.file("a.sog")) == textIn(folder.file("b.sog")));
-        std::filesystem::remove(folder.file("b.sog"));
+        fs::remove(folder.file("b.sog"));
     }
 }
 
-TEST_CASE_FIXTURE(
-    InFolder,
-    "discs stay discs, antialiased Gaussians stay so, and scales without extent, whatever the others are") {
+TEST_CASE_FIXTURE(InFolder, "discs, antialiasing and scales without extent are kept") {
     LoadNotes notes;
     CHECK_FALSE(throughSog(folder, randomScene(0, 100, false), &notes).isGaussian3d());
     CHECK_FALSE(notes.three_scales);
@@ -159,9 +152,8 @@ TEST_CASE_FIXTURE(InFolder, "scenes of no splat, one, on one plane and far away 
     CHECK(throughSog(folder, {}).size() == 0);
     const Scene one = randomScene(3, 1);
     const Scene back = throughSog(folder, one);
-    REQUIRE(back.size() == 1);
+    REQUIRE(these(back.size(), back.sh) == these(1, one.sh));
     CHECK(glm::distance(back.positions[0], one.positions[0]) < 1e-4f);
-    CHECK(back.sh == one.sh);
     Scene plane = randomScene(0, 300);
     for (glm::vec3& position : plane.positions) { position.y = -7.0f; }
     plane.positions[5].x = -3e38f, plane.positions[6].z = 3e38f;
@@ -174,15 +166,12 @@ TEST_CASE_FIXTURE(InFolder, "scenes of no splat, one, on one plane and far away 
     }
 }
 
-TEST_CASE_FIXTURE(
-    InFolder,
-    "whoever waits for a large scene hears how far it is and may stop it; nothing half-written is left, nor "
-    "what is refused") {
+TEST_CASE_FIXTURE(InFolder, "writing tells how far it is, may be stopped, and leaves nothing half-written") {
     const Scene scene = randomScene(1, 3000);
     checkProgress(8, [&](const Progress& progress) {
         CHECK(folder.fileCount() == 0);
         writeSog(scene, folder.file("a.sog"), progress);
-        std::filesystem::remove(folder.file("a.sog"));
+        fs::remove(folder.file("a.sog"));
     });
     Scene light = randomScene(0, 10);
     CHECK_THROWS_AS(writeSog(light, folder.file("nowhere/a.sog")), Error);

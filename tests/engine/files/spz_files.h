@@ -31,23 +31,18 @@ struct SpzText {
 
 // Two splats of SH degree 1.
 inline SpzText makeSpz(std::uint32_t version) {
-    SpzText spz{version,
-                2,
-                1,
-                8,
-                0,
-                {256, -512, 128, 0, 1, -1},
-                {255, 51},
-                {0, 255, 128, 10, 20, 30},
-                {160, 176, 32, 0, 255, 160},
-                {},
-                {}};
-    if (version == 2) {
-        spz.rotations = {128, 128, 128, 255, 128, 128};  // almost no turn; half a turn about x
-    } else {
-        // First: w largest, the others +0. Second: z largest, x = -256/511/sqrt(2), the others +0.
-        spz.rotations = {0, 0, 0, 0xc0, 0, 0, 0, 0x80 | 0x20 | 0x10};
-    }
+    SpzText spz{.version = version,
+                .splats = 2,
+                .sh_degree = 1,
+                .fractional_bits = 8,
+                .positions = {256, -512, 128, 0, 1, -1},
+                .alphas = {255, 51},
+                .colours = {0, 255, 128, 10, 20, 30},
+                .scales = {160, 176, 32, 0, 255, 160}};
+    // Version 2: almost no turn; half a turn about x. Version 3: w largest, the others +0; z largest, x =
+    // -256/511/sqrt(2), the others +0.
+    spz.rotations = version == 2 ? std::vector{128, 128, 128, 255, 128, 128}
+                                 : std::vector{0, 0, 0, 0xc0, 0, 0, 0, 0x80 | 0x20 | 0x10};
     for (int i = 0; i < 18; ++i) { spz.sh.push_back(128 + 4 * i); }
     return spz;
 }
@@ -59,8 +54,7 @@ inline std::string makeSpzContainer(const SpzText& spz, const std::string& exten
     const std::size_t sizes[] = {9u * spz.splats, spz.splats,      3u * spz.splats,
                                  3u * spz.splats, 4u * spz.splats, spz.sh.size()};
     char streams = 0;
-    std::size_t at = 16;
-    for (const std::size_t size : sizes) {
+    for (std::size_t at = 16; const std::size_t size : sizes) {
         if (size == 0) { continue; }
         std::string packed(ZSTD_compressBound(size), '\0');
         packed.resize(ZSTD_compress(packed.data(), packed.size(), plain.data() + at, size, 3));

@@ -1,5 +1,4 @@
-// Streamed SOG: each splat of a level comes from its chunks; the choice of a level; progress; and what is
-// refused.
+// Streamed SOG: where each splat of a level comes from, the choice of a level, progress, and what is refused.
 #include "engine/files/lod_meta.h"
 #include "engine/scene/pick_splats.h"
 #include "tests/engine/files/streamed_scenes.h"
@@ -24,17 +23,11 @@ Scene joined(const std::vector<Scene>& parts) {
     return whole;
 }
 
-Scene picked(const Scene& scene, const std::vector<std::uint32_t>& splats) {
-    return pickSplats(scene, splats);
-}
-
 TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the environment behind") {
     const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"),
                 env = loadScene(source + "/env");
     REQUIRE(a.positions[0] != b.positions[0]);
-    REQUIRE(a.sh_degree == 1);
-    REQUIRE(b.sh_degree == 0);
-
+    REQUIRE(these(a.sh_degree, b.sh_degree) == these(1, 0));
     const Scene finest = joined({a, b, env});
     LoadNotes notes;
     checkSameScene(loadLevel(source, 0, &notes), finest);
@@ -42,13 +35,14 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
           these(0, std::vector<std::uint64_t>{16, 8}, 8, 24));
     checkSameScene(loadScene(source), finest);
     checkSameScene(loadScene(source + "/lod-meta.json"), finest);
-    std::filesystem::rename(source + "/lod-meta.json", source + "/other");
-    checkSameScene(loadScene(source + "/other"), finest);
-    CHECK(loadScene(source + "/other").name == source + "/other");
-    std::filesystem::rename(source + "/other", source + "/lod-meta.json");
+    fs::rename(source + "/lod-meta.json", source + "/other");
+    const Scene other = loadScene(source + "/other");
+    fs::rename(source + "/other", source + "/lod-meta.json");
+    checkSameScene(other, finest);
+    CHECK(other.name == source + "/other");
 
     // One leaf has no splats at the other level; only that level's chunks need to exist.
-    for (const char* chunk : {"/a", "/b"}) { std::filesystem::remove_all(source + chunk); }
+    for (const char* chunk : {"/a", "/b"}) { fs::remove_all(source + chunk); }
     checkSameScene(loadLevel(source, 1, &notes), joined({c, env}));
     CHECK(notes.level == 1);
     CHECK(contains(notes.lines.back(),
@@ -68,11 +62,9 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
                 leaves += fmt::format("; {}: {} from {} of {}", level, splats.count, splats.first, file);
             }
             leaves += ")";
-            CHECK(leaf.errors ==
-                  (meta.has_errors
-                       ? std::vector<float>(leaf.levels.size() == 2 ? std::initializer_list<float>{0.0f, 0.5f}
-                                                                    : std::initializer_list<float>{0.0f})
-                       : std::vector<float>()));
+            std::vector<float> errors{0.0f, 0.5f};
+            errors.resize(meta.has_errors ? leaf.levels.size() : 0);
+            CHECK(leaf.errors == errors);
         }
         return leaves;
     };
@@ -88,16 +80,15 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
     CHECK(told(replaced(makeLodMeta(), R"({"0":{"file":1,"offset":0,"count":8}})", "{}")) == two);
 }
 
-TEST_CASE(
-    "a leaf that has no splats at a level shows the next coarser one, if it has one; without its environment "
-    "a scene is shown, too") {
+TEST_CASE("a leaf without splats at a level shows the next coarser one; an environment may be missing") {
     const Folder folder;
     // The first leaf has only level 1; the third, as before, has only level 0.
     const std::string less = replaced(makeLodMeta(), R"("0":{"file":0,"offset":5,"count":3},)", "");
     const std::string source = writeStreamed(folder, "scene", less);
     const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"),
                 env = loadScene(source + "/env");
-    const Scene expected = joined({picked(a, {0, 1, 2, 3, 4}), b, picked(c, {0, 1, 2, 3, 4, 5})});
+    const std::uint32_t first[] = {0, 1, 2, 3, 4, 5};
+    const Scene expected = joined({pickSplats(a, std::span(first, 5)), b, pickSplats(c, first)});
     LoadNotes notes;
     checkSameScene(loadLevel(source, 0, &notes), joined({expected, env}));
     CHECK(notes.level_splats == std::vector<std::uint64_t>{19, 8});
@@ -105,7 +96,7 @@ TEST_CASE(
                    "; 1 of 3 leaves have no splats at this level, 1 of them show a coarser one"));
     CHECK(loadLevel(source, 1).size() == 16);
 
-    std::filesystem::remove_all(source + "/env");
+    fs::remove_all(source + "/env");
     checkSameScene(loadLevel(source, 0, &notes), expected);
     CHECK(notes.environment_splats == 0);
     CHECK(contains(notes.lines.back(), "scene: is shown without its environment: "));
@@ -123,11 +114,11 @@ TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
         checkSameScene(loadLevel(source, 1), coarse);
     }
     (void)folder.write("scene/b.sog", "no archive");
-    CHECK(contains(loadError(source), "scene/b.sog: not a whole zip archive"));
+    checkError("scene/b.sog: not a whole zip archive", source);
 #ifndef _WIN32  // on Windows, links need a privilege
-    std::filesystem::remove(source + "/b.sog");
-    std::filesystem::create_symlink("a.sog", source + "/b.sog");
-    CHECK(contains(loadError(source), "b.sog is a link to a chunk that is named already"));
+    fs::remove(source + "/b.sog");
+    fs::create_symlink("a.sog", source + "/b.sog");
+    checkError("b.sog is a link to a chunk that is named already", source);
 #endif
 }
 
@@ -135,20 +126,15 @@ TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
 TEST_CASE("a scene may have more bundles than a program may have open files") {
     constexpr int kChunks = 100;
     const Folder folder;
-    std::string names, leaves;
+    const nlohmann::json bound{{"min", {0, 0, 0}}, {"max", {1, 1, 1}}};
+    nlohmann::json meta{{"lodLevels", 1}, {"tree", {{"bound", bound}}}};
     for (int i = 0; i < kChunks; ++i) {
         (void)folder.write(fmt::format("{}.sog", i), makeZip(makeChunk(2)));
-        names += fmt::format("{}\"{}.sog\"", i == 0 ? "" : ",", i);
-        leaves +=
-            fmt::format(R"({}{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"lods":{{"0":{{"file":{},"offset":0,)"
-                        R"("count":8}}}}}})",
-                        i == 0 ? "" : ",", i);
+        meta["filenames"].push_back(fmt::format("{}.sog", i));
+        const nlohmann::json splats{{"file", i}, {"offset", 0}, {"count", 8}};
+        meta["tree"]["children"].push_back({{"bound", bound}, {"lods", {{"0", splats}}}});
     }
-    (void)folder.write(
-        "lod-meta.json",
-        fmt::format(R"({{"lodLevels":1,"filenames":[{}],"tree":{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},)"
-                    R"("children":[{}]}}}})",
-                    names, leaves));
+    (void)folder.write("lod-meta.json", meta.dump());
     rlimit before{};
     REQUIRE(getrlimit(RLIMIT_NOFILE, &before) == 0);
     const rlimit few{64, before.rlim_max};
@@ -170,15 +156,14 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
                            return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4};
                        }));
 
-    LoadNotes notes;
-    checkSameScene(loadScene(source, 0, &notes),
-                   joined({picked(a, {2, 4, 6}), loadScene(source + "/b"), loadScene(source + "/env")}));
+    const auto [notes, scene] = readScene(source);
+    const std::uint32_t kept[] = {2, 4, 6};
+    checkSameScene(scene,
+                   joined({pickSplats(a, kept), loadScene(source + "/b"), loadScene(source + "/env")}));
     CHECK(these(notes.skipped_zero_rotation, notes.splats_in_file) == these(1, 20));
 }
 
-TEST_CASE(
-    "files of the first writers, without version, counts and environment, are read; progress runs from 0 to "
-    "1 over all chunks") {
+TEST_CASE("the first writers' files are read; progress runs from 0 to 1 over all chunks") {
     const Folder folder;
     std::vector<double> shares;
     (void)loadScene(writeStreamed(folder, "scene", makeLodMeta()), 0, nullptr,
@@ -191,38 +176,32 @@ TEST_CASE(
 }
 
 TEST_CASE_FIXTURE(Streamed, "the finest level that fits is chosen, or the coarsest") {
-    std::vector<std::pair<std::uint64_t, int>> asked;
-    const auto levelWithin = [&](std::uint64_t most) {
+    using Asked = std::vector<std::pair<std::uint64_t, int>>;
+    for (const std::uint64_t most : {24, 23, 0}) {
         LoadNotes notes;
-        asked.clear();
-        const auto fits = [&](std::uint64_t splats, int sh_degree) {
-            asked.emplace_back(splats, sh_degree);
-            return splats <= most;
-        };
-        const Scene scene = loadScene(source, 0, &notes, {}, {std::nullopt, fits});
-        CHECK(scene.size() == (notes.level == 0 ? 24 : 16));
-        CHECK(contains(notes.lines.back(), "the finest that fits the memory limit") ==
-              (notes.level == 1 && most > 0));
+        Asked asked;
+        const Scene scene = loadScene(source, 0, &notes, {},
+                                      {std::nullopt, [&, limit = most](std::uint64_t splats, int sh_degree) {
+                                           asked.emplace_back(splats, sh_degree);
+                                           return splats <= limit;
+                                       }});
+        CHECK(these(scene.size(), notes.level) == (most == 24 ? these(24, 0) : these(16, 1)));
+        CHECK(contains(notes.lines.back(), "the finest that fits the memory limit") == (most == 23));
         CHECK(contains(notes.lines.back(), "as none fits the memory limit") == (most == 0));
-        return notes.level;
-    };
-    CHECK(levelWithin(24) == 0);
-    CHECK(asked == std::vector<std::pair<std::uint64_t, int>>{{24, 1}});
-    CHECK(these(levelWithin(23), levelWithin(0)) == these(1, 1));
+        if (most == 24) { CHECK(asked == Asked{{24, 1}}); }
+    }
 }
 
 TEST_CASE_FIXTURE(Streamed, "a level that a scene does not have is refused") {
-    const auto errorAt = [](const std::string& scene, std::uint32_t level) {
-        return errorOf([&] { (void)loadLevel(scene, level); });
-    };
-    CHECK(contains(
-        errorAt(source, 2),
-        "scene/lod-meta.json: lod is 2, expected one of the scene's levels of detail, 0 (the finest) to 1"));
-    CHECK(contains(errorAt(source, 0xffffffff), "lod is 4294967295"));
-    CHECK(contains(errorAt(source + "/a", 0),
-                   "a: lod is 0, but a scene of this kind (SOG (directory)) has no levels of detail"));
-    CHECK(contains(errorAt("builtin:one-splat", 1),
-                   "builtin:one-splat: lod is 1, but a scene of this kind (built-in)"));
+    const std::tuple<std::string, std::uint32_t, const char*> faults[]{
+        {source, 2,
+         "scene/lod-meta.json: lod is 2, expected one of the scene's levels of detail, 0 (the finest) to 1"},
+        {source, 0xffffffff, "lod is 4294967295"},
+        {source + "/a", 0, "a: lod is 0, but a scene of this kind (SOG (directory)) has no levels of detail"},
+        {"builtin:one-splat", 1, "builtin:one-splat: lod is 1, but a scene of this kind (built-in)"}};
+    for (const auto& [scene, level, message] : faults) {
+        CHECK_THROWS_WITH_AS(loadLevel(scene, level), doctest::Contains(message), Error);
+    }
 }
 
 SCRIPT(streamed_sog, "engine/files/streamed_sog") {
@@ -236,21 +215,6 @@ SCRIPT(streamed_sog, "engine/files/streamed_sog") {
 }
 
 TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that is none, is cut off or lies too deep is refused") {
-    CHECK(loadError(writeStreamed(folder, "scene", makeLodMeta())).empty());
-    const auto loadMeta = [&](const std::string& meta) {
-        (void)folder.write("scene/lod-meta.json", meta);
-        const std::string message = loadError(folder.file("scene"));
-        CHECK(contains(message, "scene/lod-meta.json: "));
-        return message;
-    };
-    CHECK(contains(loadMeta(""), "not JSON"));
-    CHECK(contains(loadMeta(makeLodMeta().substr(0, 300)), "expected the levels of a streamed SOG scene"));
-    CHECK(contains(loadMeta("[]"), "is array, expected an object"));
-    CHECK(contains(loadMeta("{}"), "has no lodLevels, expected one"));
-    CHECK(contains(
-        loadMeta(
-            R"({"lodLevels":1,"filenames":[],"tree":{"bound":{"min":[0,0,0],"max":[0,0,0]},"children":[]}})"),
-        "tree.children: is empty"));
     const auto nest = [](int nodes) {
         std::string meta = R"({"lodLevels":1,"filenames":["a/meta.json"],"tree":)";
         for (int i = 1; i < nodes; ++i) { meta += R"({"bound":{"min":[0,0,0],"max":[1,1,1]},"children":[)"; }
@@ -258,28 +222,41 @@ TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that is none, is cut off or lies to
         for (int i = 1; i < nodes; ++i) { meta += "]}"; }
         return meta + "}";
     };
+    const std::string too_deep = "nested more than 132 levels deep";
+    const std::string childless =
+        R"({"lodLevels":1,"filenames":[],"tree":{"bound":{"min":[0,0,0],"max":[0,0,0]},"children":[]}})";
     CHECK(loadScene(writeStreamed(folder, "scene", nest(64))).size() == 8);
-    for (const std::string& deep : {nest(70), nest(100'000), std::string(1'000'000, '[')}) {
-        CHECK(contains(loadMeta(deep), "nested more than 132 levels deep"));
+    for (const auto& [meta, message] :
+         {std::pair(std::string(), std::string("not JSON")),
+          {makeLodMeta().substr(0, 300), "expected the levels of a streamed SOG scene"},
+          {"[]", "is array, expected an object"},
+          {"{}", "has no lodLevels, expected one"},
+          {childless, "tree.children: is empty"},
+          {nest(70), too_deep},
+          {nest(100'000), too_deep},
+          {std::string(1'000'000, '['), too_deep}}) {
+        (void)folder.write("scene/lod-meta.json", meta);
+        checkError("scene/lod-meta.json: ", folder.file("scene"));
+        checkError(message, folder.file("scene"));
     }
 }
 
 #ifndef _WIN32  // on Windows, links need a privilege
 TEST_CASE_FIXTURE(Streamed, "links that lead out of the folder or to the same chunk are refused") {
-    std::filesystem::rename(source + "/b", folder.file("elsewhere"));
-    std::filesystem::create_directory_symlink(folder.file("elsewhere"), source + "/b");
+    fs::rename(source + "/b", folder.file("elsewhere"));
+    fs::create_directory_symlink(folder.file("elsewhere"), source + "/b");
     std::string message = loadError(source);
     CHECK(contains(message, "scene/lod-meta.json: filenames[1]: "));
     CHECK(contains(message, "elsewhere/meta.json, expected a place within"));
-    std::filesystem::remove(source + "/b");
-    std::filesystem::create_directory_symlink("a", source + "/b");
+    fs::remove(source + "/b");
+    fs::create_directory_symlink("a", source + "/b");
     message = loadError(source);
     CHECK(contains(message, "filenames[1]: "));
     CHECK(contains(message, "is a link to a chunk that is named already"));
     // A link to the whole scene stays within it.
-    std::filesystem::remove(source + "/b");
-    std::filesystem::rename(folder.file("elsewhere"), source + "/b");
-    std::filesystem::create_directory_symlink("scene", folder.file("linked"));
+    fs::remove(source + "/b");
+    fs::rename(folder.file("elsewhere"), source + "/b");
+    fs::create_directory_symlink("scene", folder.file("linked"));
     CHECK(loadScene(folder.file("linked")).size() == 24);
 }
 #endif
@@ -293,9 +270,9 @@ TEST_CASE_FIXTURE(Streamed, "chunks that are missing or broken are named before 
         CHECK(shares == std::vector<double>{0.0});
         return message;
     };
-    std::filesystem::remove(source + "/env/q.webp");
+    fs::remove(source + "/env/q.webp");
     CHECK(contains(error(), "scene/env/q.webp: no such file"));
-    std::filesystem::remove(source + "/b/meta.json");
+    fs::remove(source + "/b/meta.json");
     CHECK(contains(error(), "scene/lod-meta.json: filenames[1]: "));
     CHECK(contains(error(), "scene/b/meta.json is not there, expected a chunk of the scene"));
     (void)folder.write("scene/a/meta.json", replaced(meta, "\"count\":8", "\"count\":4294967296"));

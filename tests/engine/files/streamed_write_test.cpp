@@ -8,12 +8,11 @@
 
 SUITE(streamed_write) {
 
-std::map<std::string, std::string> filesIn(const std::filesystem::path& folder) {
+std::map<std::string, std::string> filesIn(const fs::path& folder) {
     std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file()) {
-            files[entry.path().lexically_relative(folder).generic_string()] = textIn(entry.path());
-        }
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const std::string name = entry.path().lexically_relative(folder).generic_string();
+        if (entry.is_regular_file()) { files[name] = textIn(entry.path()); }
     }
     return files;
 }
@@ -41,10 +40,7 @@ struct Wall : InFolder {
     }
 };
 
-TEST_CASE_FIXTURE(
-    Wall,
-    "levels are written that read back whole, the same bytes every time; a folder that is cancelled or taken "
-    "is left as it was") {
+TEST_CASE_FIXTURE(Wall, "levels read back whole, the same bytes every time; a taken folder is left") {
     std::vector<std::uint32_t> half;
     for (std::uint32_t splat = 0; splat < scene.size(); splat += 2) { half.push_back(splat); }
     const Scene coarse = picked(half);
@@ -112,10 +108,7 @@ TEST_CASE_FIXTURE(Wall, "an environment is a chunk of its own that every level s
     }
 }
 
-TEST_CASE_FIXTURE(
-    Wall,
-    "what levels are off by is written for each leaf: it adds up, never falls, and is the level's mean where "
-    "nobody looked") {
+TEST_CASE_FIXTURE(Wall, "what levels are off by adds up, never falls, and is the mean where nobody looked") {
     Scene row = scene;
     for (std::size_t i = 0; i < row.size(); ++i) {
         row.positions[i] = glm::vec3(static_cast<float>(i), 0.0f, 0.0f);
@@ -124,20 +117,14 @@ TEST_CASE_FIXTURE(
     StreamedWriter writer(pathOf("a"), {.leaf_splats = row.size() / 2 + 1});
     writer.cutLeaves(row.positions);
     writer.add(0, row);
-    const auto sees = [&](double weight, double left, double right) {
+    const auto sees = [&](const SplatError& left, const SplatError& right) {
         std::vector<SplatError> errors;
-        for (const glm::vec3& p : row.positions) {
-            errors.push_back({weight, weight * (p.x < cut ? left : right)});
-        }
+        for (const glm::vec3& p : row.positions) { errors.push_back(p.x < cut ? left : right); }
         return errors;
     };
-    writer.add(1, row, sees(2.0, 0.25, 0.5));
-    writer.add(2, row, sees(1.0, 0.125, 0.25), 1);
-    std::vector<SplatError> half = sees(1.0, 0.125, 1.0);
-    for (std::size_t i = 0; i < half.size(); ++i) {
-        half[i] = row.positions[i].x < cut ? half[i] : SplatError{};
-    }
-    writer.add(3, row, half);
+    writer.add(1, row, sees({2.0, 2.0 * 0.25}, {2.0, 2.0 * 0.5}));
+    writer.add(2, row, sees({1.0, 0.125}, {1.0, 0.25}), 1);
+    writer.add(3, row, sees({1.0, 0.125}, {}));
     writer.finish();
     const LodMeta meta = metaOf("a");
     REQUIRE(these(meta.has_errors, meta.tree.size()) == these(true, 2u));
@@ -148,10 +135,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(
-    Wall,
-    "blocks are whole leaves with each splat in one, no larger than asked for, and levels may be added block "
-    "by block") {
+TEST_CASE_FIXTURE(Wall, "blocks are whole leaves, no larger than asked for, and are added one by one") {
     StreamedWriter writer(pathOf("a"), {.leaf_splats = 100});
     writer.cutLeaves(scene.positions);
     std::vector<std::uint32_t> all;
@@ -161,8 +145,9 @@ TEST_CASE_FIXTURE(
         for (const std::size_t level : {0u, 1u}) { writer.add(level, picked(block)); }
     }
     std::ranges::sort(all);
-    for (std::uint32_t splat = 0; splat < scene.size(); ++splat) { REQUIRE(all.at(splat) == splat); }
-    CHECK(all.size() == scene.size());
+    std::vector<std::uint32_t> expected(scene.size());
+    std::iota(expected.begin(), expected.end(), 0u);
+    CHECK(all == expected);
     CHECK(writer.counts() == std::vector<std::uint64_t>(2, scene.size()));
     writer.finish();
     for (const LodLeaf& leaf : metaOf("a").tree) { CHECK(leaf.levels.size() == 2); }
@@ -179,13 +164,13 @@ TEST_CASE_FIXTURE(Wall, "a scene that waits on the disk comes back as it was, an
         spill.add(0, pickSplats(scene, std::span(all).first(all.size() / 2)));
         spill.add(1, solids);
         spill.add(0, pickSplats(scene, std::span(all).subspan(all.size() / 2)));
-        for (std::size_t i = 0; i < 2; ++i) {
+        for (const std::size_t i : {0, 1}) {
             const Scene &was = i == 0 ? scene : solids, is = spill.read(i);
             checkSameScene(is, was);
             CHECK(is.name == was.name);
         }
     }
-    CHECK(!std::filesystem::exists(folder.file("spill")));
+    CHECK(!fs::exists(folder.file("spill")));
     CHECK_THROWS_AS(SceneSpill(folder.file("no/folder")), Error);
 }
 

@@ -34,18 +34,16 @@ inline Scene randomScene(int sh_degree, std::size_t splats, bool are_gaussians =
 // Whether every array has as many values as there are splats, and none is one that cannot be drawn.
 inline bool isSound(const Scene& scene) {
     const std::size_t splats = scene.size();
-    const auto finite = [](float value) { return std::isfinite(value); };
-    bool sound =
-        scene.rotations.size() == splats && scene.scales.size() == splats &&
-        scene.opacities.size() == splats && std::ranges::all_of(scene.sh, finite) &&
-        scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+    const auto finite = [](const auto&... values) { return (std::isfinite(values) && ...); };
+    bool sound = scene.rotations.size() == splats && scene.scales.size() == splats &&
+                 scene.opacities.size() == splats && std::ranges::all_of(scene.sh, finite) &&
+                 scene.sh.size() == splats * 3 * shCoefficientCount(scene.sh_degree);
     for (std::size_t i = 0; sound && i < splats; ++i) {
         const glm::vec3& p = scene.positions[i];
         const glm::vec2& scale = scene.scales[i];
-        sound = finite(p.x) && finite(p.y) && finite(p.z) && finite(scale.x) && finite(scale.y) &&
-                scale.x >= 0.0f && scale.y >= 0.0f &&
-                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f &&
-                scene.opacities[i] <= 1.0f;
+        sound = finite(p.x, p.y, p.z, scale.x, scale.y) && std::min(scale.x, scale.y) >= 0.0f &&
+                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f &&
+                scene.opacities[i] == within(0.0, 1.0);
     }
     return sound;
 }
@@ -78,7 +76,6 @@ inline std::pair<float, float> shDifferences(const Scene& a, const Scene& b,
     return most;
 }
 
-// Written as PLY, and read again.
 inline Scene writtenAndRead(const Folder& folder, const Scene& scene) {
     writePly(scene, folder.file("again.ply"));
     return loadScene(folder.file("again.ply"));
