@@ -51,13 +51,6 @@ void readScene(const std::string& input) {
     readScene({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
 }
 
-// Files begin as their format requires, so that no time is spent on finding that out.
-void readPly(Bytes input) { readScene("ply\n" + textOf(input)); }
-// The stream before compression, since a fuzzer does not find its way through gzip.
-void readSpz(Bytes input) { readScene(test::deflated("NGSP" + textOf(input), MAX_WBITS + 16, 1)); }
-// Without gzip: versions 2 and 3, and the container of version 4.
-void readBareSpz(Bytes input) { readScene("NGSP" + textOf(input)); }
-
 // What was read can be written in every format, and read again with as many splats.
 void convert(Bytes input) {
     const Scene scene = loadScene(MemoryFile(input).path());
@@ -80,7 +73,6 @@ void convert(Bytes input) {
     }
 }
 
-void readSogMeta(Bytes input) { (void)parseSogMeta(std::as_bytes(input), "meta.json"); }
 void readLodMeta(Bytes input) {
     const LodMeta meta = parseLodMeta(std::as_bytes(input), "lod-meta.json");
     for (const LodLevel& level : meta.levels) {
@@ -96,11 +88,6 @@ void readLodMeta(Bytes input) {
         if (splats != level.splats) { std::abort(); }
     }
 }
-void readSettings(Bytes input) { (void)readSettingsFile(MemoryFile(input).path()); }
-void readHeadsetText(Bytes input) { (void)readHeadset(MemoryFile(input).path()); }
-void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path(), glm::dvec3(0.0)); }
-void readMotion(Bytes input) { (void)parseHeadMotion(textOf(input), "motion.csv", MotionAxes::kUnity); }
-
 #ifdef BINOSPLAT_OPENXR
 // A script that was read is also queried: before, within and after its keys. The files it names are in a
 // folder that does not exist.
@@ -121,21 +108,24 @@ void readScript(Bytes input) {
 // "scene" takes any file: .splat, gzip, and what tells the formats apart.
 constexpr auto kTargets = std::to_array<Target>({
     {"scene", readScene},
-    {"ply", readPly},
-    {"spz", readSpz},
-    {"spz_bare", readBareSpz},
+    // Files begin as their format requires, so that no time is spent on finding that out.
+    {"ply", [](Bytes input) { readScene("ply\n" + textOf(input)); }},
+    // The stream before compression, since a fuzzer does not find its way through gzip.
+    {"spz", [](Bytes input) { readScene(test::deflated("NGSP" + textOf(input), MAX_WBITS + 16, 1)); }},
+    // Without gzip: versions 2 and 3, and the container of version 4.
+    {"spz_bare", [](Bytes input) { readScene("NGSP" + textOf(input)); }},
     {"convert", convert},
     {"ksplat", readScene},
     {"gltf", readScene},
-    {"sog_meta", readSogMeta},
+    {"sog_meta", [](Bytes input) { (void)parseSogMeta(std::as_bytes(input), "meta.json"); }},
     {"lod_meta", readLodMeta},
 #ifdef BINOSPLAT_SOG
     {"sog_bundle", readScene},
 #endif
-    {"settings", readSettings},
-    {"headset", readHeadsetText},
-    {"cameras", readCameras},
-    {"motion", readMotion},
+    {"settings", [](Bytes input) { (void)readSettingsFile(MemoryFile(input).path()); }},
+    {"headset", [](Bytes input) { (void)readHeadset(MemoryFile(input).path()); }},
+    {"cameras", [](Bytes input) { (void)readCameraFile(MemoryFile(input).path(), glm::dvec3(0.0)); }},
+    {"motion", [](Bytes input) { (void)parseHeadMotion(textOf(input), "motion.csv", MotionAxes::kUnity); }},
 #ifdef BINOSPLAT_OPENXR
     {"script", readScript},
 #endif
