@@ -114,7 +114,7 @@ TEST_CASE("between flat pictures SSIM is the luminance term; an opposite pattern
     // With zeros beyond the border, the windows there are not flat; those in the middle of the picture are.
     const PixelScores zero = ssim(a, b, Border::kZero);
     CHECK(zero.values[7 * 20 + 10] == doctest::Approx(expected).epsilon(5e-4));
-    CHECK(std::abs(static_cast<double>(zero.values[0]) - expected) > 1e-3);
+    CHECK(std::abs(zero.values[0] - expected) > 1e-3);
     const PixelScores pixel =
         ssim(makeFlat({1, 1}, {0.2f, 0.6f, 1.0f}), makeFlat({1, 1}, {0.1f, 0.6f, 0.0f}));
     CHECK(pixel.mean().value() ==
@@ -167,8 +167,7 @@ TEST_CASE("between flat pictures FLIP is their colours' difference, of any size"
     CHECK(meanFlip({9, 9}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}) == doctest::Approx(1.0).epsilon(1e-5));
     const glm::vec3 one{0.2f, 0.7f, 0.4f}, other{0.9f, 0.1f, 0.3f};
     CHECK(meanFlip({1, 1}, one, other) ==
-          doctest::Approx(
-              static_cast<double>(flipColourDifference(linearFromEncoded(one), linearFromEncoded(other))))
+          doctest::Approx(flipColourDifference(linearFromEncoded(one), linearFromEncoded(other)))
               .epsilon(1e-4));
 }
 
@@ -190,7 +189,7 @@ TEST_CASE("means by class are over that class alone") {
     const std::vector<std::uint8_t> classes{1, 1, 0, 4};
     CHECK(these(scores.mean(), scores.meanWhere(classes, 1), scores.meanWhere(classes, 0),
                 scores.meanWhere(classes, 2).has_value()) == these(0.4375, 0.375, 1.0, false));
-    CHECK_THROWS_AS(static_cast<void>(scores.meanWhere(std::vector<std::uint8_t>{1}, 1)), Error);
+    CHECK_THROWS_AS((void)scores.meanWhere(std::vector<std::uint8_t>{1}, 1), Error);
 }
 
 }  // SUITE(scores)

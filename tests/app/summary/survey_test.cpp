@@ -13,13 +13,11 @@ void addSplat(Scene& scene, const glm::vec3& position, const glm::vec3& scales, 
     scene.sh.insert(scene.sh.end(), 3, 0.5f);
 }
 
-// A dense patch, so none of its splats is alone.
+// Dense, so none of its splats is alone.
 Scene makePatch() {
     Scene scene;
     for (int i = 0; i < 40'000; ++i) {
-        addSplat(scene,
-                 glm::vec3(0.05f * static_cast<float>(i % 200), 0.05f * static_cast<float>(i / 200), 0.0f),
-                 glm::vec3(0.01f), 0.5f);
+        addSplat(scene, 0.05f * glm::vec3(i % 200, i / 200, 0), glm::vec3(0.01f), 0.5f);
     }
     return scene;
 }

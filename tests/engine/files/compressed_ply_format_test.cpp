@@ -4,9 +4,7 @@
 
 SUITE(compressed_ply_format) {
 
-double shown(const Scene& scene, std::size_t at) {
-    return 0.5 + 0.28209479 * static_cast<double>(scene.sh[at]);
-}
+double shown(const Scene& scene, std::size_t at) { return 0.5 + 0.28209479 * scene.sh[at]; }
 
 TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
     // x: all 11 bits set; y: none of 10; z: all of 11.

@@ -40,7 +40,7 @@ void checkAlike(const Scene& a, const Scene& b) {
 }
 
 glm::dvec3 colourOf(const Scene& scene, std::size_t splat, const glm::dvec3& seen_along) {
-    const auto width = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
+    const int width = 3 * shCoefficientCount(scene.sh_degree);
     return reference::evaluateHarmonics(scene.sh.data() + width * splat, scene.sh_degree,
                                         glm::normalize(seen_along));
 }
@@ -203,7 +203,7 @@ TEST_CASE_FIXTURE(InFolder, "of splats in two colour spaces the fewer are conver
         const std::string other = replaced(json.substr(begin, end - begin), gltf.extension, linear);
         for (int part = 0; part < linear_parts; ++part) { gltf.other_primitives += "," + other; }
         const auto [notes, scene] = readScene(folder.write("both.glb", gltf.glb()));
-        REQUIRE(scene.size() == 3u + 3u * static_cast<std::size_t>(linear_parts));
+        REQUIRE(scene.size() == 3u + 3u * linear_parts);
         CHECK(scene.is_linear == (linear_parts == 2));
         CHECK(countSaying(notes.lines, "3 of ") == 1);
         for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -220,6 +220,15 @@ TEST_CASE_FIXTURE(InFolder, "of splats in two colour spaces the fewer are conver
         }
     }
 }
+
+// Where they are not usual, by case of the conformance matrix.
+const std::map<std::string, glm::dvec3> kLogsOfScales{{"scale_f32", {0.2, -0.1, 0.7}},
+                                                      {"scale_i8", {1, -2, 3}},
+                                                      {"scale_i8_norm", {1, 0, -1}},
+                                                      {"scale_i16", {2, -3, 4}},
+                                                      {"scale_i16_norm", {1, 0, -1}}};
+const std::map<std::string, double> kOpacities{
+    {"opacity_f32", 0.75}, {"opacity_u8_norm", 64.0 / 255.0}, {"opacity_u16_norm", 16384.0 / 65535.0}};
 
 TEST_CASE("the fifteen cases of the conformance matrix give the values that they hold" * needsSharedData()) {
     const auto data = sharedData();
@@ -247,7 +256,7 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
             folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))));
         REQUIRE(scene.size() == 1);
         for (std::size_t i = 0; i < 48; ++i) {
-            const double stored = i < scene.sh.size() ? static_cast<double>(scene.sh[i]) : 0.0;
+            const double stored = i < scene.sh.size() ? scene.sh[i] : 0.0;
             const double in_all =
                 scene.is_linear ? stored : (lightOf(0.5 + kShConstant * stored) - 0.5) / kShConstant;
             CHECK(all.sh[48 * node + i] == doctest::Approx(i < 3 ? in_all : stored).epsilon(1e-5));
@@ -259,21 +268,11 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
         const auto valueOf = [&](const auto& values, auto usual) {
             return values.contains(name) ? values.at(name) : usual;
         };
-        const glm::dvec3 logs = valueOf(std::map<std::string, glm::dvec3>{{"scale_f32", {0.2, -0.1, 0.7}},
-                                                                          {"scale_i8", {1, -2, 3}},
-                                                                          {"scale_i8_norm", {1, 0, -1}},
-                                                                          {"scale_i16", {2, -3, 4}},
-                                                                          {"scale_i16_norm", {1, 0, -1}}},
-                                        glm::dvec3(0.0, 0.5, -0.5));
+        const glm::dvec3 logs = valueOf(kLogsOfScales, glm::dvec3(0.0, 0.5, -0.5));
         glm::dmat3 expected(0.0);
         for (int axis = 0; axis < 3; ++axis) { expected[axis][axis] = std::exp(2.0 * logs[axis]); }
         CHECK(largest(covarianceOf(scene, 0) - expected) < 1e-5 * largest(expected));
-        CHECK(scene.opacities[0] ==
-              doctest::Approx(valueOf(std::map<std::string, double>{{"opacity_f32", 0.75},
-                                                                    {"opacity_u8_norm", 64.0 / 255.0},
-                                                                    {"opacity_u16_norm", 16384.0 / 65535.0}},
-                                      0.25))
-                  .epsilon(1e-6));
+        CHECK(scene.opacities[0] == doctest::Approx(valueOf(kOpacities, 0.25)).epsilon(1e-6));
         CHECK(scene.sh_degree == (name.starts_with("sh_degree") ? name.back() - '0' : 0));
         for (std::size_t i = 0; i < scene.sh.size(); ++i) {
             CHECK(scene.sh[i] ==
@@ -351,19 +350,6 @@ TEST_CASE_FIXTURE(InFolder, "attributes, headers and buffers that do not fit are
     checkGlb("version 1, expected 2",
              replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5)));
     checkGlb("bytes of JSON, expected at most", GltfText::makeGlb(json + blanks, gltf.binary()));
-    const char* const outside = "expected a path within the folder";
-    for (const auto& [uri, message] : {std::pair("gone.bin", "gone.bin: no such file"),
-                                       {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"},
-                                       {"data:;base64,AAA", "buffers[0]: uri begins with 'data:;base64,AAA'"},
-                                       {"data:;base64,A*AA", "buffers[0]: uri begins with"},
-                                       {"data:;base64,AAA=", "byteLength is"},
-                                       {"../x.bin", outside},
-                                       {"/etc/passwd", outside},
-                                       {"a%2", outside},
-                                       {"http://a/b", outside},
-                                       {"", outside}}) {
-        checkError(message, folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri))));
-    }
     checkError("buffers[0]: has no uri", folder.write("out.gltf", json));
     checkError("bytes of JSON, expected at most 33554432", folder.write("long.gltf", json + blanks));
 }

@@ -7,7 +7,6 @@
 
 namespace binosplat::test {
 
-// Each is another, removed with its files.
 class Folder {
 public:
     Folder() = default;
@@ -67,7 +66,6 @@ inline void appendTyped(std::string& bytes, const std::string& type, double valu
     }
 }
 
-// In the little end's order, as most formats have numbers.
 inline void appendLittle(std::string& bytes, const std::string& type, const std::vector<double>& values) {
     for (const double value : values) { appendTyped(bytes, type, value, Encoding::kLittle); }
 }
@@ -171,12 +169,10 @@ inline void checkSays(const std::vector<std::string>& lines, const std::string& 
     CHECK_MESSAGE(contains(lines[0], part), lines[0]);
 }
 
-// How many lines contain this part.
 inline std::ptrdiff_t countSaying(const std::vector<std::string>& lines, const std::string& part) {
     return std::ranges::count_if(lines, [&](const std::string& line) { return contains(line, part); });
 }
 
-// A scene, and the notes about it.
 struct ReadScene {
     LoadNotes notes;
     Scene scene;
@@ -202,11 +198,14 @@ inline std::string replaced(std::string text, const std::string& from, const std
 
 // A script in which `> FROM => TO` reads `good` with FROM replaced by TO; `read` returns the error, if any.
 inline void runFaults(const std::string& good,
-                      const std::function<std::string(const std::string& broken)>& read) {
-    runScript({[&](const std::string& edit, const std::string&) {
+                      const std::function<std::string(const std::string& broken)>& read,
+                      const std::map<std::string, std::function<void(const std::string&)>>& verbs = {}) {
+    ScriptHost host{[&](const std::string& edit, const std::string&) {
         const std::string error = read(edited(good, edit));
         return Outcome{error.empty() ? 0 : 1, "", withSlashes(error) + "\n"};
-    }});
+    }};
+    host.verbs = verbs;
+    runScript(host);
 }
 
 inline PlyText makeIn(Encoding encoding, int rest_count = 0, bool three_scales = false) {

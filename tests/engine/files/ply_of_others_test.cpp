@@ -44,36 +44,15 @@ TEST_CASE("elements before and after the splats and line breaks of Windows are p
             "element camera 2\nproperty float a\nproperty uchar b\n"
             "element strip 2\nproperty list uchar int index\nproperty double w\nelement none 5\n";
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
-        const std::string line_end = encoding == Encoding::kAscii ? "\n" : "";
-        for (const double row : {1.0, 2.0}) {
-            appendTyped(ply.data_before, "float", row, encoding);
-            appendTyped(ply.data_before, "uchar", 3.0, encoding);
-            ply.data_before += line_end;
-        }
-        for (const int count : {3, 0}) {
-            appendTyped(ply.data_before, "uchar", count, encoding);
-            for (int i = 0; i < count; ++i) { appendTyped(ply.data_before, "int", i, encoding); }
-            appendTyped(ply.data_before, "double", 0.5, encoding);
-            ply.data_before += line_end;
+        using Row = std::vector<std::pair<const char*, double>>;
+        for (const Row& row : {Row{{"float", 1}, {"uchar", 3}}, Row{{"float", 2}, {"uchar", 3}},
+                               Row{{"uchar", 3}, {"int", 0}, {"int", 1}, {"int", 2}, {"double", 0.5}},
+                               Row{{"uchar", 0}, {"double", 0.5}}}) {
+            for (const auto& [type, value] : row) { appendTyped(ply.data_before, type, value, encoding); }
+            if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
         }
         ply.data_after = "whatever follows";
         checkSameScene(loadScene(folder.write("more.ply", ply.bytes())), expected);
-    }
-}
-
-TEST_CASE_FIXTURE(InFolder, "a comment names the vertical axis, and writing keeps it") {
-    for (const auto& [comment, axis] : {std::pair("comment Vertical axis: z\n", 2),
-                                        {"comment vertical AXIS:  X\n", 0},
-                                        {"comment Vertical axis: y\n", -1},
-                                        {"comment Vertical axis: w\n", -1},
-                                        {"comment Vertical axis:\n", -1},
-                                        {"comment the Vertical axis: z\n", -1}}) {
-        CAPTURE(comment);
-        const std::string said = replaced(makePly(0).bytes(), "comment made for a test\n", comment);
-        const auto [notes, scene] = readScene(folder.write("said.ply", said));
-        CHECK(scene.vertical_axis == axis);
-        CHECK(writtenAndRead(folder, scene).vertical_axis == axis);
-        CHECK(notes.axes == (axis < 0 ? "" : fmt::format("{} is vertical (named by the file)", "xyz"[axis])));
     }
 }
 

@@ -170,31 +170,6 @@ TEST_CASE_FIXTURE(InFolder, "a logit of infinity is opacity 1; only the shortest
     }
 }
 
-TEST_CASE_FIXTURE(InFolder, "a comment asks for antialiasing, the last one counts, and writing keeps it") {
-    const auto loadWith = [&](const std::string& comments, bool three_scales = true) {
-        return loadScene(folder.write(
-            "said.ply", replaced(makePly(0, three_scales).bytes(), "comment made for a test\n", comments)));
-    };
-    for (const auto& [comments, asks] : {std::pair("comment SplatRenderMode: mip\n", true),
-                                         {"comment  splatrendermode:  MIP \r\n", true},
-                                         {"comment antialiased 1\n", true},
-                                         {"comment postshot.anti_aliasing=1\n", true},
-                                         {"comment SplatRenderMode: default\ncomment antialiased 1\n", true},
-                                         {"comment made for a test\n", false},
-                                         {"comment SplatRenderMode: default\n", false},
-                                         {"comment SplatRenderMode:\n", false},
-                                         {"comment SplatRenderMode: mip or not\n", false},
-                                         {"comment antialiased 0\n", false},
-                                         {"comment antialiased 1\ncomment SplatRenderMode: default\n", false},
-                                         {"obj_info SplatRenderMode: mip\n", false}}) {
-        CAPTURE(comments);
-        const Scene scene = loadWith(comments);
-        CHECK(scene.antialiased == asks);
-        CHECK(writtenAndRead(folder, scene).antialiased == asks);
-    }
-    CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs do not dim
-}
-
 TEST_CASE_FIXTURE(InFolder, "an empty scene is a scene") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding, 9, true);
@@ -247,34 +222,33 @@ TEST_CASE_FIXTURE(InFolder, "loading and writing report progress, and leave noth
     checkProgress(4, [&](const Progress& progress) { (void)loadScene(kept, 0, nullptr, progress); });
 }
 
-TEST_CASE_FIXTURE(InFolder, "errors of the source itself say what it is") {
-    checkError("absent.ply: no such file", folder.file("absent.ply"));
-    checkError("is empty", folder, "");
-#ifndef _WIN32
-    checkError("not a regular file", "/dev/null");
-    checkError("cannot be read", std::string(5000, 'x'));
-#endif
-    CHECK(loadScene(folder.write("named_otherwise.txt", makePly().bytes())).size() == 3);
-
-    const std::string pointer =
-        "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, 'a') + "\nsize 12345\n";
-    for (const std::string name :
-         {"scene.ply", "scene.splat", "scene.spz", "scene.sog", "meta.json", "lod-meta.json"}) {
-        checkError(name + ": is a Git LFS pointer", folder.write(name, pointer));
-    }
-    for (const std::string& other :
-         {std::string("P6 not a scene"), pointer.substr(0, 30), pointer + std::string(2000, 'x')}) {
-        checkError("not a scene file", folder, other);
-    }
-}
-
 SCRIPT(ply, "engine/files/ply") {
     const Folder folder;
-    runFaults(makePly(9).bytes(), [&](const std::string& broken) {
+    const auto readSaid = [&](const std::string& comments, bool three_scales) {
+        return readScene(folder.write(
+            "said.ply",
+            replaced(makePly(0, three_scales).bytes(), "comment made for a test\n", unescaped(comments))));
+    };
+    std::map<std::string, std::function<void(const std::string&)>> verbs;
+    for (const bool asks : {false, true}) {
+        verbs[asks ? "mip" : "plain"] = [&, asks](const std::string& comments) {
+            const Scene scene = readSaid(comments, true).scene;
+            CHECK(these(scene.antialiased, writtenAndRead(folder, scene).antialiased) == these(asks, asks));
+            CHECK_FALSE(readSaid(comments, false).scene.antialiased);  // discs do not dim
+        };
+    }
+    verbs["vertical"] = [&](const std::string& line) {
+        const auto [notes, scene] = readSaid(line.substr(2), false);
+        const int axis = line[0] == '-' ? -1 : line[0] - 'x';
+        CHECK(these(scene.vertical_axis, writtenAndRead(folder, scene).vertical_axis) == these(axis, axis));
+        CHECK(notes.axes == (axis < 0 ? "" : line.substr(0, 1) + " is vertical (named by the file)"));
+    };
+    const auto readBroken = [&](const std::string& broken) {
         const std::string message = loadError(folder, broken);
         CHECK(contains(message, "broken.ply: header"));
         return message;
-    });
+    };
+    runFaults(makePly(9).bytes(), readBroken, verbs);
 }
 
 TEST_CASE_FIXTURE(InFolder, "absurd counts are refused before anything is allocated") {

@@ -16,7 +16,6 @@ inline std::string codebook(double first, double step, int entries = 256) {
     return text + "]";
 }
 
-// Four bytes per pixel.
 inline std::string makeWebp(std::uint32_t width, std::uint32_t height,
                             const std::vector<std::uint8_t>& rgba) {
     const std::vector<std::byte> file = encodeWebp({{width, height}, rgba}, "a test's picture");
@@ -48,8 +47,7 @@ inline SogText makeSog(int version = 2, bool with_palette = true) {
         R"("mins":[-1,-2,0],"maxs":[1,0,0.6931471805599453],"files":["l.webp","u.webp"])";
     std::string meta, palette;
     if (with_palette) {
-        // Degree 1: 64 entries of three pixels in each row; coefficient k of entry e has the bytes (e, k,
-        // 100).
+        // Degree 1: 64 entries of three pixels a row; coefficient k of entry e has the bytes (e, k, 100).
         std::vector<std::uint8_t> centroids;
         for (std::uint8_t entry = 0; entry < 128; ++entry) {
             for (std::uint8_t k = 0; k < 3; ++k) { centroids.insert(centroids.end(), {entry, k, 100, 255}); }
@@ -83,8 +81,8 @@ inline SogText makeSog(int version = 2, bool with_palette = true) {
 }
 
 inline std::string writeSogFolder(const Folder& folder, const std::string& name, const SogText& files) {
-    std::filesystem::remove_all(folder.file(name));
-    std::filesystem::create_directories(folder.file(name));
+    fs::remove_all(folder.file(name));
+    fs::create_directories(folder.file(name));
     for (const auto& [file, bytes] : files) { (void)folder.write(name + "/" + file, bytes); }
     return folder.file(name);
 }

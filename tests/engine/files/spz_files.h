@@ -21,7 +21,7 @@ struct SpzText {
         for (const int value : {sh_degree, fractional_bits, flags, 0}) {
             text.push_back(static_cast<char>(value));
         }
-        for (const int value : positions) { text += littleWord(static_cast<std::uint32_t>(value), 3); }
+        for (const int value : positions) { text += littleWord(value, 3); }
         for (const auto& column : {alphas, colours, scales, rotations, sh}) {
             for (const int value : column) { text.push_back(static_cast<char>(value)); }
         }
@@ -67,12 +67,10 @@ inline std::string makeSpzContainer(const SpzText& spz, const std::string& exten
            extension + table + data;
 }
 
-// One record of an extension.
 inline std::string spzRecord(std::uint32_t type, const std::string& content) {
     return littleWord(type) + littleWord(content.size()) + content;
 }
 
-// The record that names the axes.
 inline std::string spzAxesRecord(int system) {
     return spzRecord(0xadbe0003u, std::string{static_cast<char>(system), '\0', '\0', '\0'});
 }

@@ -14,9 +14,8 @@ inline std::string makeLodMeta() {
     };
     const std::string bound = R"({"bound":{"min":[-4,-2,0],"max":[1,0.5,2]},"children":[)";
     return R"({"version":1,"asset":{"generator":"a test"},"count":24,"counts":[16,8],"lodLevels":2,)"
-           R"("lodErrors":true,)"
-           R"("environment":"env/meta.json","filenames":["a/meta.json","b/meta.json","c/meta.json"],)"
-           R"("tree":)" +
+           R"("lodErrors":true,"environment":"env/meta.json",)"
+           R"("filenames":["a/meta.json","b/meta.json","c/meta.json"],"tree":)" +
            bound + leaf(R"("0":{"file":0,"offset":5,"count":3},"1":{"file":2,"offset":0,"count":6})") + "," +
            bound + leaf(R"("0":{"file":0,"offset":0,"count":5},"1":{"file":2,"offset":6,"count":2})") + "," +
            leaf(R"("0":{"file":1,"offset":0,"count":8})") + "]}]}}";
@@ -32,11 +31,12 @@ inline SogText makeChunk(int left, int version = 2, bool with_palette = true) {
 // Returns the folder. `meta` is from makeLodMeta, or broken. Chunks listed in `bundles` are .sog files.
 inline std::string writeStreamed(const Folder& folder, const std::string& name, std::string meta,
                                  const std::vector<std::string>& bundles = {}) {
-    std::filesystem::remove_all(folder.file(name));
-    std::filesystem::create_directories(folder.file(name));
-    for (const auto& [chunk, files] :
-         {std::pair("a", makeChunk(2)), std::pair("b", makeChunk(3, 2, false)),
-          std::pair("c", makeChunk(4, 1)), std::pair("env", makeChunk(5, 2, false))}) {
+    fs::remove_all(folder.file(name));
+    fs::create_directories(folder.file(name));
+    for (const auto& [chunk, files] : {std::pair("a", makeChunk(2)),
+                                       {"b", makeChunk(3, 2, false)},
+                                       {"c", makeChunk(4, 1)},
+                                       {"env", makeChunk(5, 2, false)}}) {
         if (std::ranges::count(bundles, chunk) > 0) {
             meta = replaced(meta, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
             (void)folder.write(fmt::format("{}/{}.sog", name, chunk), makeZip(files, *chunk == 'b'));

@@ -105,8 +105,7 @@ TEST_CASE("a leaf without splats at a level shows the next coarser one; an envir
 
 TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
     const Scene fine = loadLevel(source, 0), coarse = loadLevel(source, 1);
-    for (const std::vector<std::string>& bundles :
-         {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
+    for (const auto& bundles : {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
         (void)writeStreamed(folder, "scene", makeLodMeta(), bundles);
         LoadNotes notes;
         checkSameScene(loadLevel(source, 0, &notes), fine);
@@ -152,10 +151,10 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
     meta = replaced(meta, R"("offset":0,"count":5)", R"("offset":2,"count":3)");
     const std::string source = writeStreamed(folder, "scene", meta);
     const Scene a = loadScene(source + "/a");
-    (void)folder.write("scene/a/q.webp", makeNine([](int i) {
-                           return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4};
-                       }));
-
+    const auto rotations = [](int i) {
+        return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4};
+    };
+    (void)folder.write("scene/a/q.webp", makeNine(rotations));
     const auto [notes, scene] = readScene(source);
     const std::uint32_t kept[] = {2, 4, 6};
     checkSameScene(scene,
@@ -166,8 +165,8 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
 TEST_CASE("the first writers' files are read; progress runs from 0 to 1 over all chunks") {
     const Folder folder;
     std::vector<double> shares;
-    (void)loadScene(writeStreamed(folder, "scene", makeLodMeta()), 0, nullptr,
-                    [&](double share) { shares.push_back(share); });
+    const auto tell = [&](double share) { shares.push_back(share); };
+    (void)loadScene(writeStreamed(folder, "scene", makeLodMeta()), 0, nullptr, tell);
     CHECK(shares == std::vector<double>{0.0, 0.0, 8.0 / 24, 16.0 / 24, 1.0});
     std::string meta = replaced(
         makeLodMeta(), R"("version":1,"asset":{"generator":"a test"},"count":24,"counts":[16,8],)", "");

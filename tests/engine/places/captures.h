@@ -65,7 +65,6 @@ public:
         turnScene(scene_, turn, scale);
         return *this;
     }
-    // Splats anywhere in a box.
     Maker& fill(const glm::dvec3& low, const glm::dvec3& high, int count) {
         for (int i = 0; i < count; ++i) { add(low + inUnitBox() * (high - low), {0, 1, 0}); }
         return *this;

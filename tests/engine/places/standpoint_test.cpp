@@ -198,7 +198,7 @@ TEST_CASE("what was seen from in front alone, and a single splat, are looked at 
         const Standpoint at_one = judgeStandpoint(one);
         CHECK(at_one.view.look == glm::dvec3(3, 2, 1));
         CHECK(glm::distance(at_one.view.eye, at_one.view.look) ==
-              between(2.0 * static_cast<double>(scale), std::max(2.0, 10.0 * static_cast<double>(scale))));
+              between(2.0 * scale, std::max(2.0, 10.0 * scale)));
     }
 }
 

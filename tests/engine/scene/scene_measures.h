@@ -66,7 +66,7 @@ inline double largest(const glm::dmat3& matrix) {
 // Splat i of `b` is order[i] of `a`, or i without an order.
 inline std::pair<float, float> shDifferences(const Scene& a, const Scene& b,
                                              const std::vector<std::uint32_t>& order = {}) {
-    const auto width = static_cast<std::size_t>(3 * shCoefficientCount(a.sh_degree));
+    const int width = 3 * shCoefficientCount(a.sh_degree);
     std::pair<float, float> most;
     for (std::size_t i = 0; i < b.sh.size(); ++i) {
         const std::size_t splat = order.empty() ? i / width : order[i / width];

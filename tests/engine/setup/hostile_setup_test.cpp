@@ -116,7 +116,7 @@ TEST_CASE("settings as deep as a file can be, or in strange letters, are read or
 
 TEST_CASE_FIXTURE(AtWork, "letters outside of ASCII are read in quotes and comments alone") {
     const auto read = [&](const std::string& text) {
-        std::ofstream(work.path / "letters.toml", std::ios::binary) << text;
+        work.write("letters.toml", text);
         (void)readSettingsFile(work.path / "letters.toml");
     };
     CHECK_NOTHROW(read("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n"));

@@ -64,29 +64,6 @@ TEST_CASE("headers, blanks and comments are optional, and orientations are norma
     CHECK_FALSE(near(forwardOf(parse(kHeader + values).poseAt(0.0)), {0.0, -1.0, 0.0}));
 }
 
-TEST_CASE("times are seconds or ticks, by their size or by the header") {
-    const std::string pose = ",0,0,0,0,0,0,1\n";
-    // Two ticks of 100 ns apart, in numbers so large that a double cannot represent single ticks.
-    CHECK(parse("637139354998275741" + pose + "637139354998275743" + pose).duration_s() ==
-          doctest::Approx(2e-7).epsilon(1e-12));
-    CHECK(parse("1700000000.25" + pose + "1700000000.5" + pose).duration_s() == 0.25);
-    CHECK(parse("-1" + pose + "1" + pose).duration_s() == 2.0);
-    for (const auto& [name, seconds] : {std::pair("time", 2000.0),
-                                        {"time_s", 2000.0},
-                                        {"time_ms", 2.0},
-                                        {"timestamp_us", 2e-3},
-                                        {"timestamp_ns", 2e-6},
-                                        {"time_ticks", 2e-4}}) {
-        CAPTURE(std::string(name));
-        CHECK(parse(name + (",x,y,z,qx,qy,qz,qw\n1000" + pose) + "3000" + pose).duration_s() ==
-              doctest::Approx(seconds).epsilon(1e-12));
-    }
-    for (const auto& [time, message] : {std::pair("1700000000000", "m.csv:1: time is 1700000000000"),
-                                        {"1700000000000000000", "unit in a header"}}) {
-        CHECK_THROWS_WITH_AS(parse(time + pose), doctest::Contains(message), Error);
-    }
-}
-
 SCRIPT(motion, "engine/setup/motion") {
     const auto read = [](const std::string& text) {
         const HeadMotion motion = parse(unescaped(text));

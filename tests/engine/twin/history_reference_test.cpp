@@ -46,9 +46,7 @@ double depthAt(const WarpedHistory& warped, std::size_t pixel) {
 
 std::complex<double> responseOf(const std::array<double, 6>& weights, double frequency) {
     std::complex<double> sum(0.0);
-    for (int tap = 0; tap < 6; ++tap) {
-        sum += weights[static_cast<std::size_t>(tap)] * std::polar(1.0, frequency * (tap - 2));
-    }
+    for (int tap = 0; tap < 6; ++tap) { sum += weights[tap] * std::polar(1.0, frequency * (tap - 2)); }
     return sum;
 }
 

@@ -69,8 +69,7 @@ TEST_CASE("no pixel at which a splat is met is left out by cull, box, runs or bi
                         reference::Hit hit;
                         if (!reference::meet(plane, {x + 0.5, y + 0.5}, hit)) { continue; }
                         ++met;
-                        tiles.insert(static_cast<std::uint32_t>(y / 16) * ((size_px.x + 15) / 16) +
-                                     static_cast<std::uint32_t>(x / 16));
+                        tiles.insert(y / 16 * ((size_px.x + 15) / 16) + x / 16);
                         const bool in_box = x >= box.x && x < box.z && y >= box.y && y < box.w;
                         const bool in_run = std::ranges::any_of(
                             runs, [&](auto run) { return x >= run.begin && x < run.end; });
@@ -165,12 +164,12 @@ TEST_CASE("two discs that cross are blended in the order of each pixel's own hit
     // Sorted as whole discs, the red one comes first everywhere, but to the right of the crossing the green
     // one is nearer. On the ray x = X z they are at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre:
     // a distance of sqrt(2) x along the disc.
-    const auto alphaAt = [](double x) { return static_cast<double>(0.8f) * std::exp(-x * x); };
+    const auto alphaAt = [](double x) { return 0.8f * std::exp(-x * x); };
     for (const std::size_t window : {std::size_t{1}, std::size_t{2}, SIZE_MAX}) {
         const Picture picture = renderByPixel(makeCrossing(1.0f), window);
         for (const std::uint32_t column : {10u, 51u, 54u, 90u}) {
             const double slope = (column - 50.0) / 100.0, red_z = 2.0 / (1.0 - slope),
-                         green_z = static_cast<double>(2.1f) / (1.0 + slope);
+                         green_z = 2.1f / (1.0 + slope);
             const double red_alpha = alphaAt(slope * red_z), green_alpha = alphaAt(slope * green_z);
             const bool red_first = window == 1 || red_z < green_z;
             CHECK(red_first == (window == 1 || column < 53));
@@ -199,7 +198,7 @@ TEST_CASE("blending stops before transmittance falls under 1e-4") {
                                     {.position = {0, 0, 3}, .opacity = 0.98f},
                                     {.position = {0, 0, 4}, .opacity = 1.0f},
                                     {.position = {0, 0, 5}, .opacity = 0.1f}});
-    CHECK(rgbaAt(picture, 50, 50).w == near(1.0 - 0.01 * (1.0 - static_cast<double>(0.98f))));
+    CHECK(rgbaAt(picture, 50, 50).w == near(1.0 - 0.01 * (1.0 - 0.98f)));
 }
 
 TEST_CASE("spherical harmonics have the signs scenes are trained with") {

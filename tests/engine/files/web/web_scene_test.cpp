@@ -27,69 +27,32 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
     return names;
 }
 
-TEST_CASE("an address begins with http or https; a name in its folder cannot lead out of it") {
-    for (const char* open : {"http://a/b.ply", "HTTP://127.example/b.ply", "http://localhost.example",
-                             "http://128.0.0.1/b.ply", "http://[::2]/b.ply"}) {
-        CHECK_MESSAGE(isOpenOnTheWay(open), open);
-    }
-    for (const char* closed : {"https://a/b.ply", "http://localhost/b.ply", "http://LocalHost:8000/b.ply",
-                               "http://127.0.0.1:80?a", "http://[::1]:8000/b.ply", "b.ply"}) {
-        CHECK_MESSAGE(!isOpenOnTheWay(closed), closed);
-    }
-    for (const char* address : {"http://a/b.ply", "HTTPS://a"}) { CHECK(isAddress(address)); }
-    for (const char* other :
-         {"file:///etc/passwd", "ftp://a/b", "http:/a", "a/http://b", "builtin:fence", "https"}) {
-        CHECK_FALSE(isAddress(other));
-    }
-    const Address address = parseAddress("https://server:81/a b/c/meta.json?key=1&x#top");
-    CHECK(these(address.text, address.folder, address.server) ==
-          these("https://server:81/a%20b/c/meta.json?key=1&x", "https://server:81/a%20b/c/",
-                "https://server:81"));
-    CHECK(addressOf(address, "") == address.text);
-    CHECK(addressOf(address, "0/50% ä?#.webp") == "https://server:81/a%20b/c/0/50%25%20%C3%A4%3F%23.webp");
-    CHECK(parseAddress("http://server").folder == "http://server/");
-    CHECK(parseAddress("http://server?a/b").text == "http://server/?a/b");
-    for (const char* name : {"../a", "a/../b", "/a", "a//b", ".", "a/"}) {
-        CAPTURE(name);
-        CHECK_THROWS_AS((void)addressOf(address, name), Error);
-    }
-    const auto parse = [](const std::string& text) { (void)parseAddress(text); };
-    CHECK_THROWS_WITH_AS(parse("http:///a.ply"),
-                         "http:///a.ply: names no server, expected https://SERVER/FILE", Error);
-    for (const std::string rest : {"server/a.ply", "server/a@b.ply?c", "server"}) {
-        const std::string host = rest.substr(0, rest.find('/'));
-        CHECK_THROWS_WITH_AS(
-            parse("https://me:sec@ret@" + rest),
-            ("https://...@" + rest + ": names a user, expected an address that anybody may read").c_str(),
-            Error);
-    }
-    CHECK(parseAddress("https://server/a@b/c.ply").server == "https://server");
-    CHECK_THROWS_WITH_AS(parse("https://server/" + std::string(5000, 'a')),
-                         doctest::Contains("at most 4096 bytes"), Error);
-}
-
-TEST_CASE("machines of this network are told from those of the public web") {
-    for (const std::string& ip : wordsIn("127.0.0.1 10.1.2.3 172.16.0.1 172.31.255.255 192.168.0.1 "
-                                         "169.254.169.254 100.64.0.1 0.0.0.0 ::1 :: fe80::1 febf::1 "
-                                         "fc00::1 fd12:3456::1 ::ffff:10.0.0.1 ::ffff:a00:1 ::10.0.0.1 "
-                                         "::7f00:1 64:ff9b::10.0.0.1 64:ff9b::a9fe:a9fe "
-                                         "64:ff9b:1::c0a8:1 64:ff9b:1:2:3:4:10.0.0.1 2002:7f00:1:: "
-                                         "2002:a00:1:2:3:4:5:6 0:0:0:0:0:0:0:1 fe80::1%eth0")) {
-        CHECK_MESSAGE(isPrivateAddress(ip), ip);
-    }
-    for (const char* ip : {"8.8.8.8", "172.15.0.1", "172.32.0.1", "192.169.0.1", "169.253.0.1", "100.128.0.1",
-                           "2606:4700::1", "fec0::1", "fb00::1", "::ffff:8.8.8.8", "::ffff:808:808",
-                           "64:ff9b::808:808", "64:ff9b:1::8.8.8.8", "64:ff9c::a00:1", "64:ff9b:2::a00:1",
-                           "2002:808:808::a00:1", "2003:a00:1::", "example.org", "10.example.org"}) {
-        CHECK_FALSE_MESSAGE(isPrivateAddress(ip), ip);
-    }
+SCRIPT(web_scene, "engine/files/web/web_scene") {
+    ScriptHost host{[](const std::string& words, const std::string&) {
+        const Outcome outcome = tried([&] {
+            const std::size_t bar = std::min(words.find(" |"), words.size());
+            const Address address = parseAddress(words.substr(0, bar));
+            return bar < words.size()
+                       ? addressOf(address, words.substr(std::min(bar + 3, words.size()))) + "\n"
+                       : fmt::format("{}\n{}\n{}\n", address.text, address.folder, address.server);
+        });
+        CHECK_FALSE(contains(outcome.errors, "sec@ret"));
+        return outcome;
+    }};
+    const auto addVerb = [&](const char* verb, const auto& holds) {
+        host.verbs[verb] = [=](const std::string& line) {
+            for (const std::string& word : wordsIn(line)) { CHECK_MESSAGE(holds(word), word); }
+        };
+    };
+    addVerb("open", isOpenOnTheWay);
+    addVerb("closed", std::not_fn(isOpenOnTheWay));
+    addVerb("address", isAddress);
+    addVerb("other", std::not_fn(isAddress));
+    addVerb("private", isPrivateAddress);
+    addVerb("public", std::not_fn(isPrivateAddress));
+    addVerb("nobody", std::not_fn(parseIp));
     CHECK(!parseIp(""));
-    for (const std::string& none :
-         wordsIn(": ::: 1 1.2.3 1.2.3.4.5 1.2.3.256 1.2.3. 1.2.3.4. a.b.c.d 1:2:3:4:5:6:7 1:2:3:4:5:6:7:8:9 "
-                 "1:2:3:4:5:6:7:8:: 1::2::3 :1:2:3:4:5:6:7 1:2:3:4:5:6:7: 12345:: g:: 1.2.3.4:: "
-                 "1:2:3:4:5:6:7:1.2.3.4 -1:: 1::+2")) {
-        CHECK_MESSAGE(!parseIp(none), none);
-    }
+    runScript(host);
 }
 
 TEST_CASE_FIXTURE(Served, "a scene at an address is the same as on the disk, whatever its format") {
