@@ -109,35 +109,35 @@ SogText withShortText(SogText files) {
     return files;
 }
 
+std::vector<std::string> nestDeep(const std::string& key) {
+    return {std::string(1'000'000, '['), key + std::string(100'000, '[') + std::string(100'000, ']') + "}"};
+}
+
 std::vector<Target> sogTargets(const Folder& folder) {
     std::vector<Target> targets;
     for (const int version : {1, 2}) {
         const SogText files = withShortText(makeSog(version));
         const std::string good = files.at("meta.json"), name = fmt::format("sog{}", version);
         (void)writeSogFolder(folder, name, files);
-        targets.push_back(
-            {.name = fmt::format("meta.json of version {}", version),
-             .good = good,
-             .changes = 800,
-             .numbers = good.size(),
-             .file = name + "/meta.json",
-             .source = name,
-             .most_splats = 9,
-             .more = {std::string(1'000'000, '['), R"({"version":2,"count":)" + std::string(100'000, '[') +
-                                                       std::string(100'000, ']') + "}"}});
+        targets.push_back({.name = fmt::format("meta.json of version {}", version),
+                           .good = good,
+                           .changes = 800,
+                           .numbers = good.size(),
+                           .file = name + "/meta.json",
+                           .source = name,
+                           .most_splats = 9,
+                           .more = nestDeep(R"({"version":2,"count":)")});
     }
     const std::string levels = makeLodMeta();
     (void)writeStreamed(folder, "streamed", levels);
-    targets.push_back(
-        {.name = "lod-meta.json",
-         .good = levels,
-         .changes = 800,
-         .numbers = levels.size(),
-         .file = "streamed/lod-meta.json",
-         .source = "streamed",
-         .most_splats = 32,  // four chunks of them
-         .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') +
-                                                   std::string(100'000, ']') + "}"}});
+    targets.push_back({.name = "lod-meta.json",
+                       .good = levels,
+                       .changes = 800,
+                       .numbers = levels.size(),
+                       .file = "streamed/lod-meta.json",
+                       .source = "streamed",
+                       .most_splats = 32,  // four chunks of them
+                       .more = nestDeep(R"({"lodLevels":1,"tree":)")});
     for (const std::string picture : {"l.webp", "n.webp", "q.webp", "p.webp"}) {
         (void)writeSogFolder(folder, picture, makeSog());
         targets.push_back({.name = picture,

@@ -18,13 +18,14 @@ TEST_CASE("tiles are tinted up to their last pixel, and what is reprojected stay
     const std::vector<std::uint32_t> kinds{gpu::kTileEdge, 0, gpu::kTileCenter, gpu::kTilePredicted, 0, 0};
     const Image picture = makeRoiPicture(makeGrey({33, 17}, 4, 0.5f), kinds, {});
     CHECK(these(picture.channels, picture.size_px) == these(3, glm::uvec2(33, 17)));
-    CHECK(isAt(picture, 0, 0, tinted(PixelOrigin::kEdgeRoi, 0.5f)));
-    CHECK(isAt(picture, 15, 15, tinted(PixelOrigin::kEdgeRoi, 0.5f)));
-    CHECK(isAt(picture, 16, 15, glm::vec3(0.5f)));
-    CHECK(isAt(picture, 31, 0, glm::vec3(0.5f)));
-    CHECK(isAt(picture, 32, 15, tinted(PixelOrigin::kCenterRoi, 0.5f)));
-    CHECK(isAt(picture, 15, 16, tinted(PixelOrigin::kPredictedRoi, 0.5f)));
-    CHECK(isAt(picture, 32, 16, glm::vec3(0.5f)));
+    const PixelOrigin plain = PixelOrigin::kReprojected;
+    const PixelOrigin origins[] = {PixelOrigin::kEdgeRoi,      plain, PixelOrigin::kCenterRoi,
+                                   PixelOrigin::kPredictedRoi, plain, plain};
+    for (std::uint32_t i = 0; i < 33 * 17; ++i) {
+        const std::uint32_t x = i % 33, y = i / 33;
+        const PixelOrigin origin = origins[y / 16 * 3 + x / 16];
+        CHECK(isAt(picture, x, y, origin == plain ? glm::vec3(0.5f) : tinted(origin, 0.5f)));
+    }
     const Image waves = makeWaves({5, 4}, 0.0);
     CHECK(isAt(makeRoiPicture(waves, {}, {}), 4, 3, colourOf(waves, 4, 3)));
 }

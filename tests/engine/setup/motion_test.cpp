@@ -15,7 +15,13 @@ HeadMotion parse(const std::string& text, MotionAxes axes = MotionAxes::kOpenXr)
 bool near(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-9; }
 
 glm::dvec3 forwardOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 0.0, 1.0); }
-glm::dvec3 downOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 1.0, 0.0); }
+
+void checkPose(const Pose& pose, const glm::dvec3& position, const glm::dvec3& forward,
+               const glm::dvec3& down) {
+    CHECK(near(pose.position, position));
+    CHECK(near(forwardOf(pose), forward));
+    CHECK(near(pose.orientation * glm::dvec3(0.0, 1.0, 0.0), down));
+}
 
 TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
     const glm::dvec3 right(1.0, 0.0, 0.0), up(0.0, 1.0, 0.0), back(0.0, 0.0, 1.0);
@@ -33,15 +39,12 @@ TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
                     {MotionAxes::kUnity, back, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}}};
     for (const auto& turn : turns) {
         const Pose pose = poseFromRecording({}, glm::angleAxis(kQuarter, turn.about), turn.axes);
-        CHECK(near(forwardOf(pose), turn.forward));
-        CHECK(near(-downOf(pose), turn.up_of_the_head));
+        checkPose(pose, glm::dvec3(0.0), turn.forward, -turn.up_of_the_head);
     }
     // One metre to the right, two up and three ahead.
     for (const auto& [axes, ahead] : {std::pair(MotionAxes::kOpenXr, -3.0), {MotionAxes::kUnity, 3.0}}) {
         const Pose still = poseFromRecording({1.0, 2.0, ahead}, glm::dquat(1.0, 0.0, 0.0, 0.0), axes);
-        CHECK(near(still.position, {1.0, -2.0, 3.0}));
-        CHECK(near(forwardOf(still), {0.0, 0.0, 1.0}));
-        CHECK(near(downOf(still), {0.0, 1.0, 0.0}));
+        checkPose(still, {1.0, -2.0, 3.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0});
     }
 }
 
@@ -87,8 +90,7 @@ TEST_CASE("poses between samples lie on the way") {
     }
     // The head keeps still outside of the recording.
     CHECK(near(motion.poseAt(-5.0).position, {0.0, 0.0, 0.0}));
-    CHECK(near(motion.poseAt(99.0).position, {4.0, 0.0, 0.0}));
-    CHECK(near(forwardOf(motion.poseAt(99.0)), {-1.0, 0.0, 0.0}));
+    checkPose(motion.poseAt(99.0), {4.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
     CHECK(near(parse("3,1,0,0,0,0,0,1\n").poseAt(7.0).position, {1.0, 0.0, 0.0}));
 }
 
@@ -98,14 +100,9 @@ TEST_CASE("a camera starts where it is put and moves in its own frame") {
     const double half = std::sqrt(0.5);
     const HeadMotion motion = parse(fmt::format("0,7,8,9,0,{},0,{}\n1,6.5,8,9,0,1,0,0\n", half, half));
     const Pose start = lookAt({1.0, 2.0, 3.0}, {1.0, 2.0, 13.0}, {1.0, 0.0, 0.0});
-    const Pose first = motion.cameraAt(0.0, start, 4.0);
-    CHECK(near(first.position, start.position));
-    CHECK(near(forwardOf(first), {0.0, 0.0, 1.0}));
+    checkPose(motion.cameraAt(0.0, start, 4.0), start.position, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0});
     // Half a metre is two units here. Up is world x and ahead world z, so right is world y.
-    const Pose last = motion.cameraAt(1.0, start, 4.0);
-    CHECK(near(last.position, {1.0, 2.0, 5.0}));
-    CHECK(near(forwardOf(last), {0.0, -1.0, 0.0}));
-    CHECK(near(downOf(last), {-1.0, 0.0, 0.0}));
+    checkPose(motion.cameraAt(1.0, start, 4.0), {1.0, 2.0, 5.0}, {0.0, -1.0, 0.0}, {-1.0, 0.0, 0.0});
     // The path is as long as recorded, times the scale.
     CHECK(glm::length(motion.cameraAt(0.5, start, 4.0).position - start.position) == doctest::Approx(1.0));
     CHECK(glm::length(motion.cameraAt(1.0, start).position - start.position) == doctest::Approx(0.5));
