@@ -182,17 +182,15 @@ TEST_CASE_FIXTURE(AtWork, "splats go by depth or distance, as the options, the c
 
 TEST_CASE("the help of view has its own rows and those it shares, and none that only other commands have") {
     std::map<std::string, bool> is_of_view;
-    const auto addRows = [&](const auto& rows) {
-        for (const auto& row : rows) { is_of_view[row.text.key] |= (row.text.commands & kView) != 0; }
+    const auto addRows = [&](const auto&... tables) {
+        const auto add = [&](const auto& row) {
+            is_of_view[row.text.key] |= (row.text.commands & kView) != 0;
+        };
+        (std::ranges::for_each(tables, add), ...);
     };
     addRows(viewRows());
     const std::size_t own = is_of_view.size();
-    addRows(runRows());
-    addRows(renderRows());
-    addRows(benchRows());
-    addRows(sceneRows());
-    addRows(convertRows());
-    addRows(compareRows());
+    addRows(runRows(), renderRows(), benchRows(), sceneRows(), convertRows(), compareRows());
     CHECK(own >= 5);
     const std::string help = std::get<HelpText>(parseLine("view --help")).text;
     std::size_t others = 0;

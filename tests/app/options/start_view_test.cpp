@@ -1,5 +1,5 @@
-// Facts about the eyes of a picture: at first they are where the program chooses, at a camera that comes with
-// the scene, or where the options say.
+// Facts about where eyes are at first: where the program chooses, at a camera of the scene, or as options
+// say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
 #include "engine/builtin/procedural.h"
