@@ -33,8 +33,7 @@ TEST_CASE("within 15 degrees of a lens's centre an error counts as it is, at 43 
     CHECK(badTiles(middle) == doctest::Approx(64.0));
     CHECK(worst(middle) == doctest::Approx(whole).epsilon(1e-4));
     CHECK(badTiles(border) == 0.0);
-    // Two pixels span 0.248 degrees there, and the finest visible cycle is 1/48 + 0.022 (angle - 15) degrees,
-    // at the tile's 35 to 46 degrees.
+    // Two pixels span 0.248 degrees at the tile's 35 to 46, the finest cycle seen 1/48 + 0.022 (angle - 15).
     CHECK(worst(border) == between(whole * std::pow(0.248 / (1.0 / 48.0 + 0.022 * (46.0 - 15.0)), 2.0) * 0.85,
                                    whole * std::pow(0.248 / (1.0 / 48.0 + 0.022 * (35.0 - 15.0)), 2.0)));
     CHECK(worst(find(full, full)) == 0.0);

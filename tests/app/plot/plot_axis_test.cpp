@@ -24,10 +24,9 @@ TEST_CASE("any range has three to ten ticks, in order, within an axis that holds
                 for (std::size_t i = 1; i < axis.ticks().size(); ++i) {
                     CHECK(axis.ticks()[i] > axis.ticks()[i - 1]);
                 }
-                CHECK(axis.share(low) > -1e-9);
-                CHECK(axis.share(low * ratio) < 1.0 + 1e-9);
-                CHECK(axis.share(axis.ticks().front()) > -1e-9);
-                CHECK(axis.share(axis.ticks().back()) < 1.0 + 1e-9);
+                for (const double value : {low, low * ratio, axis.ticks().front(), axis.ticks().back()}) {
+                    CHECK(axis.share(value) == between(-1e-9, 1.0 + 1e-9));
+                }
             }
         }
     }
