@@ -6,8 +6,7 @@
 
 SUITE(compare) {
 
-// Two paths, two pictures of waves, one with a value that is not a number, one of another size, one with a
-// single channel, and weights for LPIPS.
+// Pictures of waves, also of other sizes, with one channel and with NaN, two paths, and weights for LPIPS.
 struct Pictures : Workplace {
     Pictures() {
         writePfm(path / "a.pfm", makeWaves({40, 30}, 0.0));
@@ -21,8 +20,7 @@ struct Pictures : Workplace {
         writePnm(path / "a.ppm", makeFlat({20, 20}, glm::vec3(0.2f, 0.4f, 0.6f)));
         writePfm(path / "a_as_floats.pfm", readPnm(path / "a.ppm"));
         writeFloats(path / "w.bin", makeLpipsWeights(7));
-        // Two paths of three frames, of which one is off by 0.2: the changes are 0.3 and -0.1 instead of 0.1
-        // twice.
+        // One path has a frame that is off by 0.2: the changes are 0.3 and -0.1 instead of 0.1 twice.
         for (const auto& [folder, greys] : {std::pair("still", std::array{0.5f, 0.6f, 0.7f}),
                                             std::pair("flickers", std::array{0.5f, 0.8f, 0.7f})}) {
             fs::create_directory(path / folder);

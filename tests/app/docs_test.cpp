@@ -1,5 +1,5 @@
-// Facts about the documents: their links lead somewhere, the options and files they name exist, and the
-// program understands their commands.
+// Facts about the documents: their links, options and files exist, and the program understands their
+// commands.
 #include "app/command_line/commands_table.h"
 #include "app/command_line/option_documents.h"
 #include "tests/app/document_links.h"
@@ -98,7 +98,7 @@ std::string wrongCall(std::vector<std::string> call) {
     std::erase(call, "OPTIONS");
     for (std::string& word : call) { std::ranges::replace(word, '\\', '/'); }  // Windows paths
     try {
-        test::parseWords(call);
+        parseWords(call);
     } catch (const Error& error) {
         const std::string message = error.what();
         const bool lacks_cameras = message.starts_with("--view is given without"),
@@ -130,8 +130,8 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
     }
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "fish and zsh complete what is typed") {
-    if (!test::isInstalled("fish", "fish") || !test::isInstalled("zsh", "zsh")) { return; }
+TEST_CASE_FIXTURE(AtWork, "fish and zsh complete what is typed") {
+    if (!isInstalled("fish", "fish") || !isInstalled("zsh", "zsh")) { return; }
     work.write("complete.fish", documentOf("fish") +
                                     "for words in re 'render --mode pre' 'compare --lp' 'render --path pos'\n"
                                     "    complete -C \"binosplat $words\" | string split -f 1 \\t\nend\n");
@@ -158,8 +158,8 @@ while zpty -r shell line; do :; done
           "binosplat render --path poses.csv \n");
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "groff shows the man page, with every command and every option of it") {
-    if (!test::isInstalled("groff", "groff-base")) { return; }
+TEST_CASE_FIXTURE(AtWork, "groff shows the man page, with every command and every option of it") {
+    if (!isInstalled("groff", "groff-base")) { return; }
     work.write("page", documentOf("man"));
     const Outcome shown = work.runCommand("groff -man -Tascii -ww -P-cbou page");
     CHECK(these(shown.exit_code, shown.errors) == these(0, ""));
@@ -174,9 +174,9 @@ TEST_CASE_FIXTURE(test::AtWork, "groff shows the man page, with every command an
     }
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats and description") {
-    if (!test::isInstalled("desktop-file-validate", "desktop-file-utils") ||
-        !test::isInstalled("appstreamcli", "appstream")) {
+TEST_CASE_FIXTURE(AtWork, "desktops accept the program's entry, formats and description") {
+    if (!isInstalled("desktop-file-validate", "desktop-file-utils") ||
+        !isInstalled("appstreamcli", "appstream")) {
         return;
     }
     const std::string base = (kSource / "app" / "linux" / "org.binosplat.viewer").string();
@@ -200,13 +200,12 @@ TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats an
     CHECK(std::ranges::count(call, "%f") == 1);
     const std::string name = "/home/a b/my scene.ply";
     std::ranges::replace(call, std::string("%f"), name);
-    CHECK(std::get<ViewOptions>(test::parseWords(call)).scene == name);
+    CHECK(std::get<ViewOptions>(parseWords(call)).scene == name);
     for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
         CHECK_MESSAGE(contains(opened, type + ";"), type);
     }
     // Once the formats are installed, files have these types, so that a double click opens the program.
-    if (!test::isInstalled("update-mime-database", "shared-mime-info") ||
-        !test::isInstalled("gio", "libglib2.0-bin")) {
+    if (!isInstalled("update-mime-database", "shared-mime-info") || !isInstalled("gio", "libglib2.0-bin")) {
         return;
     }
     const Outcome types = work.runCommand(
@@ -216,9 +215,7 @@ TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats an
         "echo x >scene.$name && gio info -a standard::content-type scene.$name || exit; done");
     CHECK_MESSAGE(types.exit_code == 0, types.errors);
     std::string given;
-    for (const std::string& type : findAll(types.output, "standard::content-type: (.+)\n")) {
-        given += type + ";";
-    }
+    for (const auto& type : findAll(types.output, "standard::content-type: (.+)\n")) { given += type + ";"; }
     CHECK(given == opened);
 }
 
@@ -242,10 +239,9 @@ TEST_CASE("links of the documents lead somewhere; the options and files they nam
     CHECK(files > 20);
 }
 
-TEST_CASE("commands that the documents show are understood" * test::nightly()) {
+TEST_CASE("commands that the documents show are understood" * nightly()) {
     int calls = 0, runs = 0;
-    const std::vector<std::string> run_commands =
-        findAll(textIn(kSource / "run"), R"(\n    ([a-z0-9]+)\)\n)");
+    const auto run_commands = findAll(textIn(kSource / "run"), R"(\n    ([a-z0-9]+)\)\n)");
     REQUIRE(run_commands.size() == 5);
     const std::string presets = textIn(kSource / "CMakePresets.json");
     fs::current_path(kSource);  // configs are named relative to it
@@ -276,7 +272,7 @@ TEST_CASE("commands that the documents show are understood" * test::nightly()) {
     CHECK(runs > 4);
 }
 
-TEST_CASE_FIXTURE(test::AtWork, "the README's commands about files do what they say" * test::nightly()) {
+TEST_CASE_FIXTURE(AtWork, "the README's commands about files do what they say" * nightly()) {
     int done = 0;
     for (const std::string& line : codeLines(textIn(kSource / "README.md"))) {
         const std::vector<std::string> call = callOfProgram(line);
