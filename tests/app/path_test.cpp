@@ -61,12 +61,8 @@ TEST_CASE_FIXTURE(Way, "frames that were finished before a signal are kept, and 
         CHECK(contains(stopped.errors,
                        fmt::format("{} of 7 frames are in {}, --resume continues", kept, frames)));
         CHECK(report(frames).at("frames").size() == static_cast<std::size_t>(kept));
-        checkRefused("render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode " +
-                         mode + " --rate 4 --resume --layout " + (is_film ? "sbs" : "separate") + " --out " +
-                         frames,
-                     1,
-                     is_film ? "must be 64x32 as the frames that --resume adds"
-                             : "must be 32x32 as the frames that --resume adds");
+        checkRefused(edited(walk, "64x48 => 32x32") + frames + " --resume", 1,
+                     fmt::format("must be {} as the frames that --resume adds", is_film ? "64x32" : "32x32"));
         go(walk + frames + " --resume");
         CHECK(report(frames).at("frames").size() == static_cast<std::size_t>(7 - kept));
         for (int frame = 0; frame < 7; ++frame) {
