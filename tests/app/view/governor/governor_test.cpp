@@ -4,12 +4,14 @@
 
 SUITE(governor) {
 
+using enum Quality;
+using enum Mode;
 constexpr double kPeriodMs = 1000.0 / 90.0;
 const GovernedSettings kWish{0.22, 1.0}, kAll{1.0, 1.0};
 
 // The settings of `temporal` where everything fits.
 GovernedSettings allOf(Quality quality) {
-    return {1.0, 1.0, quality == Quality::kSharp ? 34.0 : quality == Quality::kBalanced ? 30.0 : 27.0};
+    return {1.0, 1.0, quality == kSharp ? 34.0 : quality == kBalanced ? 30.0 : 27.0};
 }
 
 // The share of the work that an error bound takes in these tests.
@@ -18,9 +20,8 @@ double workOf(const GovernedSettings& settings) {
                                          : settings.budget;
 }
 
-// `ms` is the time of all the work at full resolution, of which the share `fixed` does not depend on the
-// budget, and a third does not depend on the resolution. Small and large frames alternate, the same way in
-// every run.
+// `ms` is the time of all the work at full resolution: a share, `fixed`, does not depend on the budget, a
+// third not on the resolution. Small and large frames alternate, the same way in every run.
 double cost(double ms, double fixed, const GovernedSettings& settings, std::size_t frame) {
     const double pixels = settings.resolution_scale * settings.resolution_scale;
     const double shiver = 1.0 + 0.04 * std::sin(12.9898 * static_cast<double>(frame));
@@ -28,20 +29,20 @@ double cost(double ms, double fixed, const GovernedSettings& settings, std::size
 }
 
 // Periods lost to a frame of this length on a device that other programs use as well.
-double lostBy(double gpu_ms, double others_ms, double period_ms = kPeriodMs) {
-    return std::max(std::ceil((gpu_ms + others_ms) / period_ms - 1e-9) - 1.0, 0.0);
+double lostBy(double gpu_ms, double others_ms) {
+    return std::max(std::ceil((gpu_ms + others_ms) / kPeriodMs - 1e-9) - 1.0, 0.0);
 }
 
 using Over = std::function<double(double time_s)>;
 struct Machine {
-    Quality quality = Quality::kFast;
+    Quality quality = kFast;
     double seconds = 20.0;  // length of the run
     Over ms = [](double) { return 7.0; };
     double fixed = 0.8;
     Over period_ms = [](double) { return kPeriodMs; };
     // Periods that each frame lost, as the runtime reports it.
     std::function<double(double time_s, double gpu_ms)> lost = {};
-    Mode mode = Mode::kTemporal;
+    Mode mode = kTemporal;
     GovernedSettings wish = kAll;
     int late = 0;  // frames from a change until it is drawn
 };
@@ -63,10 +64,8 @@ struct Run {
         int late = 0;
         while (time_s < machine.seconds) {
             governor.wish(machine.quality, machine.mode, machine.wish);
-            if (std::exchange(chosen, governor.settings()) != governor.settings()) {
-                late = machine.late + 1;
-            }
-            late = std::max(late - 1, 0);
+            const bool is_new = std::exchange(chosen, governor.settings()) != governor.settings();
+            late = is_new ? machine.late : std::max(late - 1, 0);
             if (late == 0 || frames.empty()) { settings = chosen; }
             const double period_ms = machine.period_ms(time_s);
             const double gpu_ms = cost(machine.ms(time_s), machine.fixed, settings, frames.size());
@@ -112,9 +111,8 @@ struct Run {
     [[nodiscard]] bool saysAtLast(const std::string& part) const { return contains(last().sentence, part); }
 };
 
-// `upheavals_s` are the times at which the load changes. 60 frames after each, the settings have settled, and
-// then change at most once a second. A step up that is taken back at once counts as one change; there are at
-// most this many.
+// 60 frames after each change of the load, `upheavals_s`, the settings have settled, and then change at most
+// once a second. A step up that is taken back at once counts as one change; there are at most this many.
 void checkCalm(const Run& run, const std::vector<double>& upheavals_s, std::size_t most_taken_back = 0) {
     double last_s = -10.0;
     std::size_t taken_back = 0;
@@ -135,7 +133,7 @@ Over constantly(double value) {
 }
 
 TEST_CASE("a change that is drawn some frames later is judged by frames that show it") {
-    for (const Mode mode : {Mode::kTemporal, Mode::kPredicted, Mode::kShared}) {
+    for (const Mode mode : {kTemporal, kPredicted, kShared}) {
         CAPTURE(nameOf(mode));
         Machine machine{.ms = [](double time_s) { return time_s < 5.0 || time_s > 10.0 ? 7.0 : 25.0; },
                         .mode = mode};
@@ -149,7 +147,7 @@ TEST_CASE("a change that is drawn some frames later is judged by frames that sho
 }
 
 TEST_CASE("off, or without the device's times, the settings are the wearer's") {
-    const Run off({.quality = Quality::kOff, .seconds = 5.0, .ms = constantly(40.0), .fixed = 1.0});
+    const Run off({.quality = kOff, .seconds = 5.0, .ms = constantly(40.0), .fixed = 1.0});
     CHECK(off.changes().empty());
     CHECK(off.last().settings == kAll);
     CHECK(off.last().sentence.empty());
@@ -159,23 +157,20 @@ TEST_CASE("off, or without the device's times, the settings are the wearer's") {
 }
 
 TEST_CASE("where everything fits the budget rises to all work, a step a second, and stays there") {
-    const Run run({.quality = Quality::kBalanced,
-                   .seconds = 30.0,
-                   .ms = constantly(6.0),
-                   .mode = Mode::kPredicted,
-                   .wish = kWish});
+    const Run run(
+        {.quality = kBalanced, .seconds = 30.0, .ms = constantly(6.0), .mode = kPredicted, .wish = kWish});
     CHECK(run.frames[30].settings == kWish);
     checkCalm(run, {});
     CHECK(run.at(15.0).settings == kAll);
     CHECK(run.changes(15.0).empty());
     CHECK(run.last().sentence.starts_with("predicted at 100 %, 100 % of an eye: "));
-    const Run bound({.quality = Quality::kBalanced, .ms = constantly(6.0)});
+    const Run bound({.quality = kBalanced, .ms = constantly(6.0)});
     CHECK(bound.changes().empty());
     CHECK(bound.last().sentence.starts_with("temporal at 100 %, errors within 30 dB: "));
 }
 
 TEST_CASE("it finds what fits a load within 60 frames, settles, and gives up no more than it must") {
-    for (const Quality quality : {Quality::kSharp, Quality::kBalanced, Quality::kFast}) {
+    for (const Quality quality : {kSharp, kBalanced, kFast}) {
         for (const double fixed : {0.05, 0.2, 0.4}) {
             for (const double ms : {9.5, 12.0, 20.0, 30.0, 50.0}) {
                 INFO("quality ", static_cast<int>(quality), ", fixed ", fixed, ", ms ", ms);
@@ -184,7 +179,7 @@ TEST_CASE("it finds what fits a load within 60 frames, settles, and gives up no 
                 if (!run.last().beaten) { CHECK(run.longestOver() <= 10); }
                 CHECK(run.longestOver(60) <= (run.last().beaten ? run.frames.size() : 3));
                 CHECK(run.changes(30.0).size() <= 2);
-                if (quality != Quality::kFast || fixed != 0.2 || ms < 30.0) { continue; }
+                if (quality != kFast || fixed != 0.2 || ms < 30.0) { continue; }
                 // A tenth of the period is kept free.
                 std::vector<double> last;
                 for (std::size_t i = run.frames.size() - 300; i < run.frames.size(); ++i) {
@@ -199,11 +194,10 @@ TEST_CASE("it finds what fits a load within 60 frames, settles, and gives up no 
 
 TEST_CASE("resolution falls only where the budget is at its least, and both rise when there is room") {
     const Over ms = [](double t) { return t < 12.0 ? 9.0 : t < 27.0 ? 24.0 : 9.0; };
-    for (const auto& [quality, least] : {std::pair(Quality::kSharp, 0.2), std::pair(Quality::kBalanced, 0.1),
-                                         std::pair(Quality::kFast, 0.05)}) {
+    for (const auto& [quality, least] :
+         {std::pair(kSharp, 0.2), std::pair(kBalanced, 0.1), std::pair(kFast, 0.05)}) {
         CAPTURE(least);
-        const Run run(
-            {.quality = quality, .seconds = 60.0, .ms = ms, .fixed = 0.4, .mode = Mode::kPredicted});
+        const Run run({.quality = quality, .seconds = 60.0, .ms = ms, .fixed = 0.4, .mode = kPredicted});
         CHECK(run.longestOver() <= 10);
         checkCalm(run, {12.0});
         CHECK(run.at(11.9).settings == kAll);
@@ -221,7 +215,7 @@ TEST_CASE("resolution falls only where the budget is at its least, and both rise
 
 TEST_CASE("a load that grows takes three steps in a row, the third of which is not down to the least") {
     const Over ms = [](double t) { return std::clamp(9.0 + 60.0 * (t - 2.0), 9.0, 15.0); };
-    const Run run({.ms = ms, .fixed = 1.0, .mode = Mode::kPredicted});
+    const Run run({.ms = ms, .fixed = 1.0, .mode = kPredicted});
     CHECK(run.longestOver() <= 10);
     REQUIRE(run.changes().size() >= 3);
     CHECK(run.frames[run.changes()[2]].time_s < 2.2);
@@ -230,7 +224,7 @@ TEST_CASE("a load that grows takes three steps in a row, the third of which is n
 
 TEST_CASE("while the head stands still the budget does not rise, and frames fit once it moves") {
     Governor governor;
-    governor.wish(Quality::kBalanced, Mode::kPredicted, kWish);
+    governor.wish(kBalanced, kPredicted, kWish);
     for (std::size_t frame = 0; frame < 1800; ++frame) {
         const bool moves = frame >= 900;
         const GovernedSettings settings = governor.settings();
@@ -244,7 +238,7 @@ TEST_CASE("while the head stands still the budget does not rise, and frames fit 
 }
 
 TEST_CASE_FIXTURE(Governor, "another scene is measured anew, and another wish begins anew") {
-    wish(Quality::kBalanced, Mode::kPredicted, kWish);
+    wish(kBalanced, kPredicted, kWish);
     for (std::size_t frame = 0; frame < 900; ++frame) {
         measure({.gpu_ms = cost(9.0, 0.6, settings(), frame), .period_ms = kPeriodMs});
     }
@@ -254,7 +248,7 @@ TEST_CASE_FIXTURE(Governor, "another scene is measured anew, and another wish be
     CHECK(sentence().empty());
     Governor other;
     for (std::size_t frame = 0; frame < 400; ++frame) {
-        other.wish(Quality::kFast, Mode::kTemporal, {frame < 200 ? kWish.budget : 0.4, 1.0});
+        other.wish(kFast, kTemporal, {frame < 200 ? kWish.budget : 0.4, 1.0});
         const double gpu_ms = cost(7.0, 0.8, other.settings(), 0);
         other.measure({gpu_ms, kPeriodMs, false, lostBy(3.0 * gpu_ms, 5.0)});
         CHECK_FALSE(contains(other.sentence(), "whatever is drawn"));
@@ -264,7 +258,7 @@ TEST_CASE_FIXTURE(Governor, "another scene is measured anew, and another wish be
 }
 
 TEST_CASE("without a budget the resolution alone changes, never above the wearer's") {
-    for (const Mode mode : {Mode::kShared, Mode::kTwoPass, Mode::kMono, Mode::kPaper, Mode::kAlternate}) {
+    for (const Mode mode : {kShared, kTwoPass, kMono, kPaper, kAlternate}) {
         const Run run({.ms = constantly(20.0), .fixed = 1.0, .mode = mode, .wish = {0.22, 1.2}});
         for (const Run::Frame& frame : run.frames) {
             CHECK(frame.settings.budget == 0.22);
@@ -274,28 +268,20 @@ TEST_CASE("without a budget the resolution alone changes, never above the wearer
         CHECK(scale < 1.2);
         CHECK(run.last().sentence.starts_with(fmt::format("{} at {:.0f} %: ", nameOf(mode), 100.0 * scale)));
     }
-    const Run one({.seconds = 60.0,
-                   .ms = [](double t) { return t < 20.0 ? 8.0 : 14.0; },
-                   .fixed = 0.6,
-                   .mode = Mode::kPredicted});
+    const Over ms = [](double t) { return t < 20.0 ? 8.0 : 14.0; };
+    const Run one({.seconds = 60.0, .ms = ms, .fixed = 0.6, .mode = kPredicted});
     CHECK(one.at(19.9).settings == kAll);
     CHECK(one.longestOver() <= 10);
     CHECK(one.last().settings.budget < 0.6);
     CHECK(one.last().settings.resolution_scale == 1.0);
-    CHECK(one.saysAtLast(" of an eye"));
 }
 
 TEST_CASE("a changing load and period, and a load that swings about the limit, are calm") {
-    const Over load =
-                   [](double t) {
-                       return t < 8.0 ? 7.0 : t < 20.0 ? 16.0 : t < 34.0 ? 7.0 : t < 46.0 ? 13.0 : 8.5;
-                   },
-               rate_hz = [](double t) {
-                   return t < 28.0 ? 90.0 : t < 46.0 ? 72.0 : 120.0;
-               };
-    const Run minute({.seconds = 60.0, .ms = load, .fixed = 0.75, .period_ms = [&](double t) {
-                          return 1000.0 / rate_hz(t);
-                      }});
+    const Over load = [](double t) {
+        return t < 8.0 ? 7.0 : t < 20.0 ? 16.0 : t < 34.0 ? 7.0 : t < 46.0 ? 13.0 : 8.5;
+    };
+    const Over period_ms = [](double t) { return 1000.0 / (t < 28.0 ? 90.0 : t < 46.0 ? 72.0 : 120.0); };
+    const Run minute({.seconds = 60.0, .ms = load, .fixed = 0.75, .period_ms = period_ms});
     checkCalm(minute, {0.0, 8.0, 20.0, 28.0, 34.0, 46.0});
     CHECK(minute.longestOver() <= 10);
     for (const Run::Frame& frame : minute.frames) { CHECK_FALSE(frame.beaten); }
@@ -307,7 +293,7 @@ TEST_CASE("a changing load and period, and a load that swings about the limit, a
 }
 
 TEST_CASE("where not even the least settings fit, it says so and stays with them") {
-    const Run slow({.quality = Quality::kSharp, .ms = constantly(60.0)});
+    const Run slow({.quality = kSharp, .ms = constantly(60.0)});
     checkCalm(slow, {0.0});
     CHECK(slow.last().beaten);
     CHECK(slow.last().settings.resolution_scale == doctest::Approx(0.8));
@@ -322,12 +308,10 @@ TEST_CASE("where not even the least settings fit, it says so and stays with them
 }
 
 TEST_CASE("displays that are missed although frames fit: others take their part, and less is used") {
-    for (const Quality quality : {Quality::kBalanced, Quality::kFast}) {
+    for (const Quality quality : {kBalanced, kFast}) {
         for (const double others_ms : {5.0, 6.0, 7.0}) {
             INFO("quality ", static_cast<int>(quality), ", others_ms ", others_ms);
-            const auto lost = [&](double t, double gpu_ms) {
-                return lostBy(gpu_ms, t < 5.0 ? 0.0 : others_ms);
-            };
+            const auto lost = [&](double t, double ms) { return lostBy(ms, t < 5.0 ? 0.0 : others_ms); };
             const Run run({.quality = quality, .seconds = 40.0, .lost = lost});
             CHECK(run.at(4.9).settings == allOf(quality));
             checkCalm(run, {5.0}, 3);
@@ -346,17 +330,17 @@ TEST_CASE("displays that are missed although frames fit: others take their part,
     checkCalm(run, {5.0}, 2);
     CHECK(run.longestLate() <= 10);
     CHECK(run.at(19.0).settings.resolution_scale < 1.0);
-    CHECK(run.last().settings == allOf(Quality::kFast));
+    CHECK(run.last().settings == allOf(kFast));
 }
 
 TEST_CASE("where displays are missed whatever is drawn nothing is given up for it, and a message says so") {
     const Run run({.seconds = 200.0, .lost = [](double, double gpu_ms) { return lostBy(gpu_ms, 12.0); }});
     CHECK(run.frames[10].settings.resolution_scale < 1.0);
-    CHECK(run.frames[40].settings == allOf(Quality::kFast));
+    CHECK(run.frames[40].settings == allOf(kFast));
     CHECK(contains(run.frames[40].sentence, "displays are missed whatever is drawn"));
     // Lower settings are tried again after a minute, and then after two.
-    CHECK(these(run.last().settings, run.last().beaten) == these(allOf(Quality::kFast), false));
-    CHECK(std::ranges::count(run.frames, allOf(Quality::kFast), &Run::Frame::settings) ==
+    CHECK(these(run.last().settings, run.last().beaten) == these(allOf(kFast), false));
+    CHECK(std::ranges::count(run.frames, allOf(kFast), &Run::Frame::settings) ==
           between(std::ssize(run.frames) - 100, std::ssize(run.frames) - 20));
     CHECK(run.changes(1.0).size() <= 8);  // three steps down and all the way back, twice
     // Once these misses are over, the message disappears and misses count again: the next ones come from a
@@ -370,8 +354,7 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
     CHECK(again.at(6.9).settings.resolution_scale == 1.0);
     CHECK(again.at(9.0).settings.resolution_scale < 1.0);
     CHECK(again.at(9.0).lost_periods == 0.0);
-    // A spike at the moment when displays begin to be missed does not make the lowest settings look better
-    // than the best ones.
+    // A spike when displays begin to be missed does not make the lowest settings look better than the best.
     std::size_t frame = 0;
     const Run spike({.seconds = 10.0, .lost = [&](double, double) {
                          return ++frame == 50 ? 6.0 : frame > 50 ? 1.0 : 0.0;
@@ -396,7 +379,7 @@ TEST_CASE("a hitch at the least settings, which meet all displays, gives nothing
 TEST_CASE("frames that are slow or come late now and then, or early for each that is late, change nothing") {
     std::size_t frame = 0;
     const Over slow = [&](double) { return ++frame % 10 == 0 ? 25.0 : 7.0; };
-    CHECK(Run({.quality = Quality::kBalanced, .ms = slow, .fixed = 1.0}).changes().empty());
+    CHECK(Run({.quality = kBalanced, .ms = slow, .fixed = 1.0}).changes().empty());
     const std::vector<std::function<double()>> shapes{[&] { return ++frame % 10 == 0 ? 5.0 : 0.0; },
                                                       [&] { return (++frame / 3) % 2 == 0 ? 0.3 : -0.3; },
                                                       [&] { return ++frame % 2 == 0 ? 0.9 : -0.9; }};
