@@ -2,7 +2,6 @@
 #include "app/options/option_table.h"
 #include "app/view/panel/first_steps.h"
 #include "app/view/panel/message_picture.h"
-#include "app/view/scenes/scene_clock.h"
 #include "app/view/settings/view_settings_table.h"
 #include "tests/app/view/panel/panel_sketch.h"
 
@@ -67,7 +66,6 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     const Flag save("Save", &Asked::save), load("Load", &Asked::load), quit("Quit", &Asked::quit);
     checkPage("Method", Page::kMethod, {save, load, quit});
     CHECK(click("paper").places.contains("Centre ROI (paper)"));
-    CHECK(settings.stereo.mode == Mode::kPaper);
     click("Centre ROI (paper)");
     CHECK(settings.stereo.warp.center_rois);
     for (const bool is_on : {true, false}) {
@@ -76,8 +74,6 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     }
     click("Axes stay");
     CHECK(settings.stereo.axes == Axes::kStay);
-    click("budget");
-    CHECK(settings.stereo.warp.budget == doctest::Approx(0.5).epsilon(0.02));
     checkPage("View", Page::kView,
               {save, load, quit, Flag("Level", &Asked::level_scene), Flag("Recentre", &Asked::recentre),
                Flag("Reset", &Asked::reset_scene), Flag("1:1", &Asked::natural_size),
@@ -111,15 +107,14 @@ glm::dvec3 drawnAt(const glm::dvec2& place) {
     for (int l = 0; l < drawn.CmdListsCount; ++l) {
         const ImDrawList& list = *drawn.CmdLists[l];
         for (int i = 0; i + 2 < list.IdxBuffer.Size; i += 3) {
-            std::array<glm::dvec2, 3> corners{};
+            const auto corner = [&](int k) {
+                const ImVec2 at = list.VtxBuffer[list.IdxBuffer[i + k % 3]].pos;
+                return glm::dvec2(at.x, at.y);
+            };
+            std::vector<double> turns;
             for (int k = 0; k < 3; ++k) {
-                const ImVec2 at = list.VtxBuffer[list.IdxBuffer[i + k]].pos;
-                corners[static_cast<std::size_t>(k)] = {at.x, at.y};
-            }
-            std::array<double, 3> turns{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                const glm::dvec2 side = corners[(k + 1) % 3] - corners[k], to = place - corners[k];
-                turns[k] = side.x * to.y - side.y * to.x;
+                const glm::dvec2 side = corner(k + 1) - corner(k), to = place - corner(k);
+                turns.push_back(side.x * to.y - side.y * to.x);
             }
             const ImVec4 seen = ImGui::ColorConvertU32ToFloat4(list.VtxBuffer[list.IdxBuffer[i]].col);
             const auto [least, most] = std::ranges::minmax(turns);
@@ -129,8 +124,7 @@ glm::dvec3 drawnAt(const glm::dvec2& place) {
     return colour;
 }
 
-TEST_CASE_FIXTURE(PanelSketch,
-                  "a button is brighter under the ray, yellow while pressed, and blue if chosen") {
+TEST_CASE_FIXTURE(PanelSketch, "a button is brighter under the ray, yellow while pressed, blue if chosen") {
     draw();
     click("Sharp");
     glm::dvec2 place = draw().places.at("Fast"), chosen = draw().places.at("Sharp");
@@ -144,10 +138,7 @@ TEST_CASE_FIXTURE(PanelSketch,
     const auto sum = [](const glm::dvec3& colour) { return colour.r + colour.g + colour.b; };
     CHECK(sum(hovered) > sum(rests) + 0.3);
     CHECK(std::min(pressed.r, pressed.g) > pressed.b + 0.3);
-    for (const glm::dvec3& grey : {rests, hovered}) {
-        CHECK(grey.b > grey.r);
-        CHECK(grey.b - grey.r < 0.2);
-    }
+    for (const glm::dvec3& grey : {rests, hovered}) { CHECK(grey.b - grey.r == between(0.0, 0.2)); }
     CHECK(blue.b > blue.r + 0.5);
 }
 
@@ -214,8 +205,7 @@ TEST_CASE_FIXTURE(PanelSketch, "each first gesture is a drawing of its own, at t
             }
             if (red > 240 && blue > 240) { first_white = std::min(first_white, i % kMessagePx.x); }
         }
-        CHECK(first_yellow + 20 < first_white);
-        CHECK(first_white < kMessagePx.x / 2);
+        CHECK(first_white == between(first_yellow + 20, kMessagePx.x / 2));
         CHECK(yellow.size() > 20);
         drawings.insert(yellow);
     }
@@ -273,29 +263,6 @@ TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page: it rests, steps, 
     CHECK(settings.page == Page::kView);
 }
 
-TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps around, and goes to a frame") {
-    SceneClock clock(10.0, 5);
-    CHECK(clock.frame() == 0);
-    for (int i = 0; i < 7; ++i) { clock.pass(0.1); }
-    CHECK(these(clock.time_s(), clock.frame()) == these(doctest::Approx(0.7), 2));
-    clock.togglePlaying();
-    clock.pass(10.0);
-    CHECK(clock.frame() == 2);
-    for (const auto& [step, frame] : {std::pair(1, 3u), std::pair(2, 0u), std::pair(-1, 4u)}) {
-        clock.step(step);
-        CHECK(clock.frame() == frame);
-    }
-    CHECK_FALSE(clock.plays());
-    clock.togglePlaying();
-    clock.goTo(1);
-    clock.pass(0.1);
-    CHECK(clock.frame() == 2);
-    clock.goTo(99);
-    CHECK(clock.frame() == 4);
-    clock.step(1);
-    CHECK_FALSE(clock.plays());
-}
-
 TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture, and letters stay there") {
     ScenePicture picture{"red", "a.png", {}};
     for (std::size_t i = 0; i < std::size_t{kScenePicturePx.x} * kScenePicturePx.y; ++i) {
@@ -306,9 +273,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture,
     REQUIRE(font->pictures().contains("red"));
     const PictureCorners& corners = font->pictures().at("red");
     const FontTexture texture = fontTexture();
-    const auto inTexels = [&](const auto& at) {
-        return glm::dvec2(at.x, at.y) * glm::dvec2(texture.size_px);
-    };
+    const auto inTexels = [&](auto at) { return glm::dvec2(at.x, at.y) * glm::dvec2(texture.size_px); };
     const glm::dvec2 low = inTexels(corners.low), high = inTexels(corners.high);
     CHECK(glm::uvec2(glm::round(high - low)) == kScenePicturePx);
     CHECK(texture.at(glm::uvec2(0.5 * (low + high))) == std::array<unsigned char, 4>{200, 10, 20, 255});
@@ -323,8 +288,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture,
                 font->pictures().contains("other")) == these(2, true, true));
 }
 
-TEST_CASE_FIXTURE(PanelSketch,
-                  "size and height change while their buttons are held; the rest is chosen by name") {
+TEST_CASE_FIXTURE(PanelSketch, "size and height change while buttons are held; the rest is chosen by name") {
     const auto held = [&](const char* name) {
         const glm::dvec2 place = draw().places.at(name);
         int times = 0;

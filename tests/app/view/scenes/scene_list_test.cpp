@@ -1,4 +1,4 @@
-// Facts about finding a scene: folders, recent scenes, what is shown of a scene, places in it.
+// Facts about finding a scene: folders, recent scenes, what is shown of a scene, also of one that moves.
 #include "app/view/scenes/scene_list.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/files/picture_writer.h"
@@ -6,6 +6,7 @@
 #include "app/view/panel/scene_chooser.h"
 #include "app/view/scenes/natural_order.h"
 #include "app/view/scenes/recent_scenes.h"
+#include "app/view/scenes/scene_clock.h"
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/seen_scenes.h"
 #include "app/view/scenes/view_scenes.h"
@@ -25,9 +26,7 @@ struct Scenes : Home {
 
 std::vector<std::string> namesOf(const SceneList& list) {
     std::vector<std::string> names;
-    for (const SceneEntry& entry : list.entries) {
-        names.push_back(entry.name + (entry.is_folder ? "/" : ""));
-    }
+    for (const SceneEntry& one : list.entries) { names.push_back(one.name + (one.is_folder ? "/" : "")); }
     return names;
 }
 
@@ -84,9 +83,9 @@ TEST_CASE_FIXTURE(Scenes, "what cannot be opened is listed with the reason, and 
     fs::create_symlink("loop.ply", path / "loop.ply");
     add("good.ply");
     const SceneList list = listFolder(path.string());
-    CHECK(these(entryOf(list, "pipe.ply").trouble.empty(), entryOf(list, "gone.ply").trouble,
-                entryOf(list, "loop.ply").trouble.empty()) == these(false, "is not there", false));
-    CHECK(entryOf(list, "good.ply").trouble.empty());
+    const auto troubleOf = [&](const std::string& name) { return entryOf(list, name).trouble; };
+    CHECK(these(troubleOf("gone.ply"), troubleOf("good.ply")) == these("is not there", ""));
+    CHECK(these(troubleOf("pipe.ply").empty(), troubleOf("loop.ply").empty()) == these(false, false));
     CHECK(these(listFolder(at("nowhere")).trouble.empty(), listFolder(at("good.ply")).trouble.empty(),
                 listFolder(at("nowhere")).above) == these(false, false, path.string()));
 }
@@ -112,8 +111,7 @@ TEST_CASE_FIXTURE(Scenes, "the way up ends at the top, and built-in scenes have 
     CHECK(entryOf(builtin, "fence").place == "builtin:fence");
 }
 
-TEST_CASE_FIXTURE(Scenes,
-                  "recent scenes are kept in the user's folder, the latest first, each once, at most ten") {
+TEST_CASE_FIXTURE(Scenes, "the ten latest scenes are kept in the user's folder, newest first, each once") {
     CHECK(recentScenes().empty());
     add("a.ply");
     for (const std::string& scene : {at("a.ply"), at("sub/../gone.ply"), std::string("builtin:fence")}) {
@@ -123,8 +121,8 @@ TEST_CASE_FIXTURE(Scenes,
     CHECK(recentScenes() == kept);
     const SceneList list = listScenes("Recent scenes", recentScenes());
     CHECK(namesOf(list) == std::vector<std::string>{"builtin:fence", "gone.ply", "a.ply"});
-    CHECK(these(list.entries[0].trouble.empty(), list.entries[1].trouble, list.entries[2].trouble.empty(),
-                list.entries[2].place) == these(true, "is not there", true, kept[2]));
+    CHECK(these(list.entries[0].trouble, list.entries[1].trouble, list.entries[2].trouble,
+                list.entries[2].place) == these("", "is not there", "", kept[2]));
     // A name with a line break would read as two scenes.
     rememberScene(at("two\nlines.ply"));
     CHECK(recentScenes() == kept);
@@ -186,15 +184,11 @@ TEST_CASE_FIXTURE(Scenes, "a scene is described in words: how much, of what kind
                            .device_bytes = 64u << 20,
                            .file_bytes = 2048};
     const auto lines = describeFacts(facts, 0.25);
-    const auto valueOf = [&](const std::string& name) {
-        const auto found = std::ranges::find(lines, name, &std::pair<std::string, std::string>::first);
-        REQUIRE(found != lines.end());
-        return found->second;
-    };
-    CHECK(these(valueOf("Splats"), valueOf("Kind"), valueOf("Colours (SH)"), valueOf("In memory"),
-                valueOf("File")) == these("1 234 567, 3 broken ones left out", "3D Gaussians",
-                                          "degree 1, 3 in the file", "64.0 MiB", "2.0 KiB"));
-    CHECK(valueOf("Scale") == "0.25 metres a scene unit");
+    std::map<std::string, std::string> valueOf(lines.begin(), lines.end());
+    CHECK(these(valueOf["Splats"], valueOf["Kind"], valueOf["Colours (SH)"], valueOf["In memory"],
+                valueOf["File"], valueOf["Scale"]) ==
+          these("1 234 567, 3 broken ones left out", "3D Gaussians", "degree 1, 3 in the file", "64.0 MiB",
+                "2.0 KiB", "0.25 metres a scene unit"));
     CHECK(describeFacts({}, 1.0).at(0).second == "0");
     // From what the loader found.
     fs::create_directory(path / "sog");
@@ -227,13 +221,10 @@ TEST_CASE_FIXTURE(Scenes, "a folder of many numbered scenes moves, one of a few 
     for (int number = 24; number <= 45; ++number) { add(fmt::format("frame_{}.ply", number)); }
     CHECK(looksLikeScene(path));
     for (const char* name : {"a.PLY", "a.ply.gz", "a.zip", "a.sog"}) { CHECK(looksLikeScene(path / name)); }
-    for (const char* name : {"a.gz", "a.txt.gz", "a.txt", "ply"}) {
-        CHECK_FALSE(looksLikeScene(path / name));
-    }
+    for (const auto name : {"a.gz", "a.txt.gz", "a.txt", "ply"}) { CHECK_FALSE(looksLikeScene(path / name)); }
 }
 
-TEST_CASE_FIXTURE(
-    Scenes, "a folder with one scene in it is that scene, unless there is something else to look into") {
+TEST_CASE_FIXTURE(Scenes, "a folder with one scene is that scene, unless there is more to look into") {
     const fs::path garden = path / "garden";
     fs::create_directories(garden / ".cache");
     for (const char* name : {"garden/garden.ply", "garden/readme.txt", "garden/.old.ply"}) { add(name); }
@@ -258,8 +249,7 @@ TEST_CASE_FIXTURE(
                 firstSceneIn("builtin:atelier")) == these(at("garden/garden.ply"), "", "", ""));
 }
 
-TEST_CASE_FIXTURE(Scenes,
-                  "a scene that was shown has a small picture and a line, and favourites come first") {
+TEST_CASE_FIXTURE(Scenes, "a scene that was shown has a small picture and a line; favourites come first") {
     for (const char* name : {"a.ply", "b.ply", "c.ply"}) { add(name); }
     Image wide{{400, 100}, 4, {}};
     for (int i = 0; i < 100 * 400; ++i) {
@@ -309,6 +299,28 @@ TEST_CASE("the rate is that of the last second's frames; late are those more tha
     show(50, 20, 20.0, 50.0, 0);        // a different rate
     show(1, 20, 10.0, 50.0, 0);         // and back again
     show(1, 60'000, 20.0, 0.0, 0);      // the machine slept
+}
+
+TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps around, and goes to a frame") {
+    SceneClock clock(10.0, 5);
+    CHECK(clock.frame() == 0);
+    for (int i = 0; i < 7; ++i) { clock.pass(0.1); }
+    CHECK(these(clock.time_s(), clock.frame()) == these(doctest::Approx(0.7), 2));
+    clock.togglePlaying();
+    clock.pass(10.0);
+    CHECK(clock.frame() == 2);
+    for (const auto& [step, frame] : {std::pair(1, 3u), std::pair(2, 0u), std::pair(-1, 4u)}) {
+        clock.step(step);
+        CHECK(these(clock.frame(), clock.plays()) == these(frame, false));
+    }
+    clock.togglePlaying();
+    clock.goTo(1);
+    clock.pass(0.1);
+    CHECK(clock.frame() == 2);
+    clock.goTo(99);
+    CHECK(clock.frame() == 4);
+    clock.step(1);
+    CHECK_FALSE(clock.plays());
 }
 
 TEST_CASE("a late frame's reason is what took longer than a display") {
