@@ -15,6 +15,13 @@ double alphaAt(const TexelPicture& picture, std::uint32_t x, std::uint32_t y) {
     return static_cast<double>(picture.texels.at(std::size_t{y} * picture.size_px.x + x) >> 24) / 255.0;
 }
 
+// Where a strip covers a point for the eye, in the strip's coordinates.
+glm::dvec2 coverOf(const Pose& room_from_strip, const glm::dvec3& eye, const glm::dvec3& point) {
+    const glm::dvec3 from = transform(inverse(room_from_strip), eye),
+                     to = transform(inverse(room_from_strip), point);
+    return glm::dvec2(from + (to - from) * (from.z / (from.z - to.z)));
+}
+
 // A flat hand, fingers along -y, whose palm is at `palm`.
 xr::HandJoints flatHand(const glm::dvec3& palm) {
     xr::HandJoints joints{};
@@ -40,11 +47,9 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
     // The palm is in the middle; each joint appears where its line of sight meets the picture.
     CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
     for (const xr::HandJoint& joint : joints) {
-        const glm::dvec3 from = transform(inverse(place.room_from_strip), eye),
-                         to = transform(inverse(place.room_from_strip), joint.place);
-        const glm::dvec3 hit = from + (to - from) * (from.z / (from.z - to.z));
-        const glm::dvec2 at = (glm::dvec2(hit) / place.size_m + 0.5) * glm::dvec2(kHandPicturePx);
-        CHECK(alphaAt(picture, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) == 1.0);
+        const glm::dvec2 hit = coverOf(place.room_from_strip, eye, joint.place);
+        const glm::uvec2 at((hit / place.size_m + 0.5) * glm::dvec2(kHandPicturePx));
+        CHECK(alphaAt(picture, at.x, at.y) == 1.0);
     }
     // At arm's length a degree has eight texels or more, and every border goes over two of them at least.
     CHECK(kHandPicturePx.x > 8.0 * glm::degrees(2.0 * std::atan(0.5 * place.size_m.x / 0.6)));
@@ -81,17 +86,13 @@ TEST_CASE("an arc is opaque along its bends and nowhere else, without gaps, and 
         REQUIRE(drawn.places[piece].has_value());
         const auto& [room_from_strip, size_m] = *drawn.places[piece];
         const auto alphaBeside = [&](double step, double aside_m) {
-            const glm::dvec3 to = transform(inverse(room_from_strip),
-                                            thrown(static_cast<double>(piece * kPointsOfPiece) + step));
-            const glm::dvec3 seen_from = transform(inverse(room_from_strip), eye);
-            const glm::dvec2 hit(seen_from + (to - seen_from) * (seen_from.z / (seen_from.z - to.z)));
+            const glm::dvec2 hit =
+                coverOf(room_from_strip, eye, thrown(static_cast<double>(piece * kPointsOfPiece) + step));
             bends_m = std::max(bends_m, std::abs(hit.x));
             const glm::dvec2 at = ((hit + glm::dvec2(aside_m, 0.0)) / size_m + 0.5) * glm::dvec2(kArcPiecePx);
             if (at.x < 0.0 || at.x >= kArcPiecePx.x) { return 0.0; }
-            return alphaAt(
-                drawn.picture,
-                static_cast<std::uint32_t>(at.x) + static_cast<std::uint32_t>(piece) * kArcPiecePx.x,
-                static_cast<std::uint32_t>(at.y));
+            const auto left = static_cast<std::uint32_t>(piece) * kArcPiecePx.x;
+            return alphaAt(drawn.picture, left + glm::uvec2(at).x, glm::uvec2(at).y);
         };
         for (double step = 0.0; step <= kPointsOfPiece; step += 0.25) {
             CHECK(alphaBeside(step, 0.0) > 0.9);
@@ -99,9 +100,7 @@ TEST_CASE("an arc is opaque along its bends and nowhere else, without gaps, and 
         }
     }
     CHECK(bends_m > 0.008);  // a straight strip would be off by this much
-    const auto isRed = [](std::uint32_t texel) {
-        return (texel & 0xffu) > 128u && (texel >> 8 & 0xffu) < 64u;
-    };
+    const auto isRed = [](std::uint32_t rgba) { return (rgba & 0xffu) > 128u && (rgba >> 8 & 0xffu) < 64u; };
     CHECK(std::ranges::none_of(drawn.picture.texels, isRed));
     arc.is_blocked = true;
     const TexelPicture red = drawArc(arc, eye, {false, true}).picture;
