@@ -30,7 +30,6 @@ TEST_CASE_FIXTURE(PanelSketch, "in the window, buttons do what keys do, and set 
     for (int key = '1'; key <= '9'; ++key) {
         CHECK(requestsOf(key, settings, status).viewpoint == static_cast<std::size_t>(key - '1'));
     }
-
     for (const auto& [name, stereo] :
          {std::pair("Red-cyan", WindowStereo::kAnaglyph), std::pair("Top, bottom", WindowStereo::kTopBottom),
           std::pair("Cross-eyed", WindowStereo::kCrossEyed), std::pair("One eye", WindowStereo::kMono),
@@ -42,7 +41,6 @@ TEST_CASE_FIXTURE(PanelSketch, "in the window, buttons do what keys do, and set 
     for (const char* slider : {"eye distance", "screen plane"}) { click(slider); }
     CHECK(settings.window_eyes == doctest::Approx(0.1).epsilon(0.05));
     CHECK(settings.window_plane == doctest::Approx(1.0).epsilon(0.1));
-
     // The list of keys.
     const int vertices = (draw(), ImGui::GetDrawData()->TotalVtxCount);
     status.window->helps = true;

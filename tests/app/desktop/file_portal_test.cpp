@@ -6,8 +6,6 @@
 
 #include <signal.h>
 
-#include <memory>
-
 SUITE(file_portal) {
 
 template <typename Function>
@@ -39,7 +37,6 @@ TEST_CASE_FIXTURE(AtWork, "a file is chosen by the portal, where there is one") 
     CHECK_FALSE(askPortalForFile(never).has_value());
     const bool has_library = functionOf("libsystemd.so.0", "sd_bus_open_user") != nullptr;
     if (!has_library || !isInstalled("dbus-daemon", "dbus")) { return; }
-
     // Without the services of this machine, which may have a portal.
     work.write("bus.conf",
                "<busconfig><type>session</type><listen>unix:tmpdir=/tmp</listen><policy context=\"default\">"
