@@ -47,9 +47,7 @@ std::string loadWithout(const Machine& machine, int number) {
     return outcome.output;
 }
 
-TEST_CASE_FIXTURE(
-    Machine,
-    "the library draws a small scene as near as it is small, and one far from 0 where its file has it") {
+TEST_CASE_FIXTURE(Machine, "the library draws a small scene from nearby, and one far from 0 where it is") {
     struct Seen {
         double share = 0.0;
         glm::dvec3 from{0.0};
@@ -78,8 +76,7 @@ TEST_CASE_FIXTURE(
     CHECK(glm::distance(far.from - away, large.from) < 0.01);
 }
 
-TEST_CASE(
-    "a scene for which the library's frame finds no room leaves the scene before, and renders it as before") {
+TEST_CASE("a scene for which the library's frame finds no room leaves the scene before as it was") {
     CHECK(loadWithout(Machine(), 32).find("visibility needs ") != std::string::npos);
 }
 
@@ -97,8 +94,7 @@ TEST_CASE("wherever the memory for it ends it does so" * nightly()) {
 
 #ifdef BINOSPLAT_OPENXR
 TEST_CASE_FIXTURE(Machine,
-                  "faults end the viewer in its own line, behind what the runtime says, and SIGTERM ends it "
-                  "as its wearer would") {
+                  "faults end the viewer with a line of its own, SIGTERM ends it as its wearer would") {
     const std::string view =
         "view builtin:slanted-wall --mode mono --simulate small.script --load-first --out seen";
     const std::string no_display = "DISPLAY= WAYLAND_DISPLAY= ";

@@ -27,8 +27,7 @@ namespace {
 std::ptrdiff_t countThreads() {
     return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
 }
-// Threads that libraries start when they are loaded (log4cplus, which comes with OpenImageIO) and never need
-// again. A fork does not have them.
+// Threads that libraries (OpenImageIO's log4cplus) start when loaded and never need again. A fork lacks them.
 const std::ptrdiff_t threads_of_libraries = countThreads();
 
 // The words as the shell splits them; false if the text needs a shell: redirections, pipes, jobs.

@@ -32,10 +32,8 @@ SCRIPT(install, "app/install") {
                                            {"BUILD", BINOSPLAT_BUILD},
                                            {"PREFIX", prefix},
                                            {"INSTALL", install + "--prefix " + prefix + " --component"}});
-    const bool has_other = fs::exists("/usr/share/openxr/1/binosplat_simulated_runtime.json");
-    if (host.features.contains("openxr")) {
-        host.features.insert(has_other ? "openxr-twice" : "openxr-alone");
-    }
+    const bool twice = fs::exists("/usr/share/openxr/1/binosplat_simulated_runtime.json");
+    if (host.features.contains("openxr")) { host.features.insert(twice ? "openxr-twice" : "openxr-alone"); }
     host.verbs["links"] = [](const std::string& folder) { checkLinks(documentsIn(folder)); };
     host.verbs["fetch"] = [&](const std::string& scene) { checkFetched(work, scene); };
     runScript(host);

@@ -198,7 +198,6 @@ TEST_CASE_FIXTURE(AtWork, "a path becomes a film with both eyes; without ffmpeg 
             .size_px == glm::uvec2(64, 32));
     work.checkRefused(film + "--out no", 1, "ffmpeg", "PATH=" + here);
     CHECK(!work.holds("no"));
-
     // The encoder itself makes a film that players read so.
     if (!isInstalled("ffmpeg", "ffmpeg") || !isInstalled("ffprobe", "ffmpeg")) { return; }
     work.go(film + "--projection vr180 --out real");

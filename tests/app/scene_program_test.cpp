@@ -62,8 +62,7 @@ TEST_CASE_FIXTURE(AtWork, "a scene moved with its cameras gives the same picture
         writePly(scene, (work.path / name / "scene.ply").string());
         work.write(name + "/cameras.json",
                    "[" + cameraJson("a", moved - glm::dvec3(0, 0, 1), kNotTurned, {64, 48}, 60.0) + "]");
-        (void)work.go(
-            fmt::format("render {0}/scene.ply --mode mono --size 64x48 --out {0}/out {1}", name, words));
+        work.go(fmt::format("render {0}/scene.ply --mode mono --size 64x48 --out {0}/out {1}", name, words));
         const auto report = nlohmann::json::parse(work.bytesOf(name + "/out/report.json"));
         const auto& eye = report["eyes"]["mono"]["position"];
         const glm::dvec3 at(eye[0].get<double>(), eye[1].get<double>(), eye[2].get<double>());

@@ -42,8 +42,7 @@ TEST_CASE_FIXTURE(Gpu, "a copy shows what the view saw of the picture, however m
             Eye view = painted.eye;
             view.size_px = {40, 30};
             view.intrinsics = intrinsicsFromFovX(0.9, view.size_px);
-            view.world_from_camera.orientation =
-                glm::angleAxis(0.05, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)));
+            view.world_from_camera.orientation = glm::angleAxis(0.05, glm::normalize(glm::dvec3(1, 2, 3)));
             PictureCopy copy(context());
             REQUIRE_FALSE(copy.ask());
             run([&](Commands& commands) { copy.record(commands, painted.picture, painted.eye, view); });

@@ -356,8 +356,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
         return scenes.frame().kernelCount() == before;
     };
     CHECK(drawsWithoutCompiling());
-    // Chosen while it is shown: frames go on as before until kernels and other frames are ready. Values of
-    // sliders apply at once.
+    // Chosen while it is shown: frames go on as before until the others are ready. Sliders apply at once.
     const ViewSettings shared = settings;
     settings.stereo.mode = Mode::kTwoPass;
     scenes.expect(settings, size_px, {size_px, true});

@@ -91,8 +91,7 @@ TEST_CASE_FIXTURE(Home, "a list of viewpoints that is broken is one line with th
                                      {with(R"([0, "x", 0])"), "viewpoints[0].eye[1]"},
                                      {with("[0, 0, 1]"), "viewpoints[0]: looks nowhere"}}) {
         write("bad.viewpoints.json", text);
-        const std::string error =
-            errorOf([&] { static_cast<void>(readViewpoints(at("bad.viewpoints.json"))); });
+        const std::string error = errorOf([&] { (void)readViewpoints(at("bad.viewpoints.json")); });
         CHECK(error.starts_with(at("bad.viewpoints.json") + ": "));
         CHECK_MESSAGE(contains(error, part), error);
     }
