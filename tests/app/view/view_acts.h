@@ -7,23 +7,15 @@
 
 namespace binosplat::test {
 
-// Where the viewer's panel hangs, in STAGE and OpenXR's axes.
-struct Panel {
-    glm::dvec3 middle;
-    glm::dquat orientation;
-};
-inline const glm::dvec2 kPanelMetres(0.468, 0.585);
-
-// In front of a head that looks along -z, as docs/simulated_script.md describes.
-inline Panel panelBefore(const glm::dvec3& head = {0.0, 1.6, 0.0}) {
+// Where the viewer's panel hangs, in STAGE and OpenXR's axes: its middle, in front of a head that looks along
+// -z, as docs/simulated_script.md describes.
+inline Pose panelBefore(const glm::dvec3& head = {0.0, 1.6, 0.0}) {
     const glm::dvec3 to_head(0.45, 0.1, 0.9), out = glm::normalize(to_head);
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), out));
-    return {head - to_head, glm::quat_cast(glm::dmat3(right, glm::cross(out, right), out))};
+    return {glm::quat_cast(glm::dmat3(right, glm::cross(out, right), out)), head - to_head};
 }
-inline Panel panelOf(const ViewRun& run, std::size_t frame) {
-    const LoggedPose pose = stagePose(run.panels(frame).at(0));
-    return {pose.position, pose.orientation};
-}
+inline Pose panelOf(const ViewRun& run, std::size_t frame) { return stagePose(run.panels(frame).at(0)); }
+inline const glm::dvec2 kPanelMetres(0.468, 0.585);
 
 // Clear of all widgets on the pages View and Method.
 inline const glm::dvec2 kBeside(0.9, 0.95);
@@ -32,9 +24,9 @@ inline const glm::dvec2 kBeside(0.9, 0.95);
 inline std::string lookingAt(const glm::dvec3& at, const glm::dvec3& look) {
     return fmt::format("position {} {} {} look {} {} {}", at.x, at.y, at.z, look.x, look.y, look.z);
 }
-inline std::string pointingAt(const Panel& panel, const glm::dvec2& share) {
-    const glm::dvec3 on_panel((share.x - 0.5) * kPanelMetres.x, (0.5 - share.y) * kPanelMetres.y, 0.3);
-    const glm::dvec3 at = panel.middle + panel.orientation * on_panel;
+inline std::string pointingAt(const Pose& panel, const glm::dvec2& share) {
+    const glm::dvec3 at =
+        transform(panel, {(share.x - 0.5) * kPanelMetres.x, (0.5 - share.y) * kPanelMetres.y, 0.3});
     const glm::dquat& q = panel.orientation;
     return fmt::format("position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}", at.x, at.y, at.z,
                        q.x, q.y, q.z, q.w);
@@ -56,7 +48,7 @@ public:
     }
 
     double now_s = 0.2;  // the session has the input
-    Panel panel;
+    Pose panel;
 
     Acts& wait(double seconds) {
         now_s += seconds;
@@ -79,13 +71,9 @@ public:
         poses_[who] = pose;
         return wait(seconds + 0.001);
     }
-    Acts& head(const std::string& pose, double seconds = 0.02) { return move("head", pose, seconds); }
-    Acts& left(const std::string& pose, double seconds = 0.02) {
-        return move("controller left", pose, seconds);
-    }
-    Acts& right(const std::string& pose, double seconds = 0.02) {
-        return move("controller right", pose, seconds);
-    }
+    Acts& head(const std::string& pose, double time_s = 0.02) { return move("head", pose, time_s); }
+    Acts& left(const std::string& to, double time_s = 0.02) { return move("controller left", to, time_s); }
+    Acts& right(const std::string& to, double time_s = 0.02) { return move("controller right", to, time_s); }
     // These three go on while time passes. Inputs are named as "right trigger" or "left thumbstick".
     Acts& hold(const std::string& input, double seconds) {
         text_ += fmt::format("press {} {:.3f} {:.3f}\n", input, now_s, now_s + seconds);
@@ -128,20 +116,15 @@ private:
 inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame,
                                   const glm::dvec3& start, const std::string& arguments) {
     CAPTURE(frame);
-    const LoggedPose head = poseOf(run.frames.at(frame).at("head"));
-    const auto inScene = [](const glm::dvec3& v) { return glm::dvec3(v.x, -v.y, -v.z); };
-    const glm::dvec3 eye = start + inScene(head.position - glm::dvec3(0.0, 1.6, 0.0));
-    const glm::dvec3 look = eye + inScene(head.orientation * glm::dvec3(0, 0, -1)),
+    const Pose head = poseOf(run.frames.at(frame).at("head"));
+    const glm::dvec3 eye = start + inScene(head.position - glm::dvec3(0.0, 1.6, 0.0)),
+                     look = eye + inScene(head.orientation * glm::dvec3(0, 0, -1)),
                      up = inScene(head.orientation * glm::dvec3(0, 1, 0));
-    const auto numbers = [](const glm::dvec3& v) {
-        return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z);
-    };
-    work.go(fmt::format("render builtin:fence --order distance --out expected --eye {} --look {} --up {} {}",
-                        numbers(eye), numbers(look), numbers(up), arguments));
+    work.go("render builtin:fence --order distance --out expected " + arguments + viewedFrom(eye, look, up));
     for (const int side : {kLeft, kRight}) {
+        CAPTURE(side);
         const Image expected =
             readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
-        CAPTURE(side);
         CHECK(compare(run.eye(frame, side), expected).psnrDb() > 50.0);
         // It must not agree for the other eye.
         CHECK(compare(run.eye(frame, 1 - side), expected).psnrDb() < 30.0);

@@ -30,10 +30,11 @@ TEST_CASE_FIXTURE(AtWork, "while a button is held the other scene is seen from t
         const bool is_second = as_second > as_first;
         const bool is_cut = std::exchange(was_second, is_second) != is_second;
         // Nothing between the two, and the picture after a cut is exact: others are made from the one before.
-        CHECK(std::max(as_first, as_second) > (is_cut ? 50.0 : 30.0));
+        const double least_db = is_cut ? 50.0 : 30.0;
+        CHECK(std::max(as_first, as_second) > least_db);
         CHECK(std::min(as_first, as_second) < 25.0);
-        CHECK(compare(run.eye(frame, kRight), (is_second ? second : first).eye(frame, kRight)).psnrDb() >
-              (is_cut ? 50.0 : 30.0));
+        const Image alone = (is_second ? second : first).eye(frame, kRight);
+        CHECK(compare(run.eye(frame, kRight), alone).psnrDb() > least_db);
         cuts += is_cut;
         of_second += is_second;
         ++frames;

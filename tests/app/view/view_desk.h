@@ -34,8 +34,7 @@ public:
     static void point() {
         hands("search --sync --onlyvisible --name ' - binosplat$' mousemove --window %1 20 20");
     }
-    // Shows or hides the help: once it has changed, everything before has reached the window. Returns the
-    // number of its latest picture.
+    // Shows or hides the help: then all before has reached the window. Returns its latest picture's number.
     std::uint64_t help() {
         hands("key h");
         const std::string lines = await("help");
@@ -74,8 +73,8 @@ public:
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
         for (const std::string& does : dragOf(button, from, to)) { hands(does); }
     }
-    // Clicks on the panel, which has a scale of 0.7 and is in the upper right corner; on its page of scenes a
-    // folder may be open.
+    // Clicks on the panel, at 0.7 of its size in the upper right corner; a folder of scenes may be open
+    // there.
     static void click(const std::string& widget, PanelPage page, const std::string& folder = "") {
         PanelSketch sketch;
         sketch.status.window.emplace();

@@ -29,8 +29,7 @@ std::string room() {
     static const Workplace made;
     if (!made.holds("room.ply")) { made.go("scene atelier --splats 40000 --out room.ply"); }
     const View view = *builtinView("atelier");
-    return fmt::format("{} --eye {},{},{} --look {},{},{}", (made.path / "room.ply").string(), view.eye.x,
-                       view.eye.y, view.eye.z, view.look.x, view.look.y, view.look.z);
+    return (made.path / "room.ply").string() + viewedFrom(view.eye, view.look, view.up);
 }
 
 ViewRun look(const Workplace& work, const std::string& keys, const std::string& script, int frames) {
@@ -53,16 +52,14 @@ TEST_CASE_FIXTURE(AtWork, "what is rendered again follows the eyes, and goes bac
              "gaze 0.3 25 0\ngaze 0.35 25 0\ngaze 0.5 25 0\ngaze 0.55 -25 0\nat 0.8 gaze off\n",
              37);
     const Chosen left = findChosen(run, 6), right = findChosen(run, 16), lost = findChosen(run, 36);
-    CHECK(left.pixels > 1000);
-    CHECK(right.pixels > 1000);
+    CHECK(std::min(left.pixels, right.pixels) > 1000);
     CHECK(left.middle < 0.35);   // measured: 0.21
     CHECK(right.middle > 0.75);  // measured: 0.80
     // While the gaze is known, and for less than a blink's time after the loss, the choice follows it; then
     // it moves back, and in the end it is as if the eyes had never been tracked.
     CHECK(findChosen(run, 11).middle == right.middle);
-    const double on_way = findChosen(run, 26).middle;
-    CHECK(on_way < right.middle - 0.1);
-    CHECK(on_way > lost.middle + 0.05);  // measured: 0.58 and 0.46
+    // Measured: 0.58 and 0.46.
+    CHECK(findChosen(run, 26).middle == between(lost.middle + 0.05, right.middle - 0.1));
     CHECK(lost.middle == between(0.4, 0.6));
     CHECK(lost.middle == findChosen(run, 31).middle);
     // The program does not print where the wearer looks.
@@ -90,8 +87,8 @@ TEST_CASE_FIXTURE(AtWork, "where the eyes may not or cannot be seen, they are ta
 }
 
 TEST_CASE_FIXTURE(AtWork, "with foveation each eye has an inset, as good as the full picture there") {
-    // 45 degrees to each side in 256 pixels, and half of that again for the inset: as many pixels as the full
-    // picture has, at the same places.
+    // 45 degrees to each side in 256 pixels, half of both for the inset: its pixels lie as the full
+    // picture's.
     constexpr std::uint32_t kSize = 256, kQuarter = kSize / 4;
     const std::string begin =
         "rate 50\nsize 256 256\ninset 26.565051177 size 128 128\nframes from 9 to 9 every 1\n";

@@ -38,13 +38,12 @@ std::size_t pulses(const ViewRun& run, std::size_t first, std::size_t count) {
 }
 
 // The pose of a hand that squeezes and carries the panel 0.2 m up.
-std::string highUp(const Panel& panel) {
-    Panel lifted = panel;
-    lifted.middle.y += 0.2;
-    return pointingAt(lifted, kMiddle);
+std::string highUp(Pose panel, const glm::dvec2& share = kMiddle) {
+    panel.position.y += 0.2;
+    return pointingAt(panel, share);
 }
 void checkLifted(const ViewRun& run, double seconds) {
-    const glm::dvec3 way = panelOf(run, run.frameAt(seconds)).middle - panelBefore().middle;
+    const glm::dvec3 way = panelOf(run, run.frameAt(seconds)).position - panelBefore().position;
     CHECK(glm::distance(glm::dvec2(way), glm::dvec2(0.0, 0.2)) < 0.002);
 }
 
@@ -53,58 +52,49 @@ void checkSaidAt(const ViewRun& run, const std::string& line, double seconds) {
     CHECK_MESSAGE(said_s == between(seconds - 0.03, seconds + 0.08), line);
 }
 
+// What shows the panel, clicks, carries and walks; empty if there is nothing that does.
+struct Controller {
+    std::string profile, menu = "b", trigger = "trigger", fist = "squeeze", stick = "thumbstick";
+    double begin_s = 0.0, carried_s = 0.0, walked_s = 0.0;
+};
+
 TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click and are felt") {
-    // Each for a fifth of a second, with the input that shows the panel.
-    std::vector<std::pair<std::string, std::string>> controllers;
-    for (const auto& [button, profiles] :
-         {std::pair("b",
-                    "oculus/touch_controller valve/index_controller hp/mixed_reality_controller "
-                    "htc/vive_cosmos_controller htc/vive_focus3_controller bytedance/pico_neo3_controller "
-                    "bytedance/pico4_controller facebook/touch_controller_pro meta/touch_controller_plus "
-                    "bytedance/pico_ultra_controller_bd varjo/xr-4_controller yvr/touch_controller_yvr "
-                    "oppo/mr_controller_oppo"),
-          std::pair("menu",
-                    "microsoft/motion_controller htc/vive_controller samsung/odyssey_controller "
-                    "bytedance/pico_g3_controller ml/ml2_controller valve/frame_controller_valve "
-                    "khr/simple_controller"),
-          std::pair("back", "huawei/controller"), std::pair("secondary", "khr/generic_controller"),
-          std::pair("cluster_front_logitech", "logitech/mx_ink_stylus_logitech")}) {
-        for (const std::string& profile : wordsIn(profiles)) { controllers.emplace_back(profile, button); }
+    std::vector<Controller> controllers;
+    for (const std::string& usual :
+         wordsIn("oculus/touch_controller valve/index_controller hp/mixed_reality_controller "
+                 "htc/vive_cosmos_controller htc/vive_focus3_controller bytedance/pico_neo3_controller "
+                 "bytedance/pico4_controller facebook/touch_controller_pro meta/touch_controller_plus "
+                 "bytedance/pico_ultra_controller_bd varjo/xr-4_controller yvr/touch_controller_yvr "
+                 "oppo/mr_controller_oppo")) {
+        controllers.push_back({usual});
     }
-    const auto triggerOf = [](const std::string& profile) {
-        return profile == "khr/simple_controller"             ? "right select"
-               : profile == "logitech/mx_ink_stylus_logitech" ? "right cluster_middle_logitech"
-                                                              : "right trigger";
-    };
-    const auto fistOf = [](const std::string& profile) {
-        return profile == "ml/ml2_controller"                 ? "right shoulder"
-               : profile == "logitech/mx_ink_stylus_logitech" ? "right cluster_back_logitech"
-                                                              : "right squeeze";
-    };
-    // Those that lack one, and those with a pad that is pressed instead of a stick.
-    const std::set<std::string> without_fist{"khr/simple_controller", "bytedance/pico_g3_controller",
-                                             "huawei/controller"},
-        without_stick{"khr/simple_controller", "logitech/mx_ink_stylus_logitech"},
-        with_pad{"htc/vive_controller", "ml/ml2_controller", "huawei/controller"};
+    for (const Controller& other : {Controller{"microsoft/motion_controller", "menu"},
+                                    {"htc/vive_controller", "menu", "trigger", "squeeze", "trackpad"},
+                                    {"samsung/odyssey_controller", "menu"},
+                                    {"bytedance/pico_g3_controller", "menu", "trigger", ""},
+                                    {"ml/ml2_controller", "menu", "trigger", "shoulder", "trackpad"},
+                                    {"valve/frame_controller_valve", "menu"},
+                                    {"khr/simple_controller", "menu", "select", "", ""},
+                                    {"huawei/controller", "back", "trigger", "", "trackpad"},
+                                    {"khr/generic_controller", "secondary"},
+                                    {"logitech/mx_ink_stylus_logitech", "cluster_front_logitech",
+                                     "cluster_middle_logitech", "cluster_back_logitech", ""}}) {
+        controllers.push_back(other);
+    }
     Acts acts(kBlind);
     acts.point(kBeside).wait(0.4 - acts.now_s);
-    Panel high = acts.panel;
-    high.middle.y += 0.2;
-    std::vector<double> begins, carried, walked;
-    for (const auto& [profile, button] : controllers) {
-        begins.push_back(acts.now_s);
-        const std::string menu = "right " + button;
-        acts.at("profile " + profile).wait(0.045).hold(triggerOf(profile), 0.03);
-        acts.wait(0.05).hold(menu, 0.02).wait(0.05).hold(menu, 0.02).wait(0.055);
-        // A fist carries the panel up and back down, and the left stick walks.
-        if (!without_fist.contains(profile)) { acts.hold(fistOf(profile), 0.09); }
-        acts.wait(0.019).right(pointingAt(high, kBeside), 0.02);
-        carried.push_back(acts.look(0.02));
+    // Each for a fifth of a second.
+    for (auto& [profile, menu, trigger, fist, stick, begin_s, carried_s, walked_s] : controllers) {
+        begin_s = acts.now_s;
+        acts.at("profile " + profile).wait(0.045).hold("right " + trigger, 0.03);
+        acts.wait(0.05).hold("right " + menu, 0.02).wait(0.05).hold("right " + menu, 0.02).wait(0.055);
+        // A fist carries the panel up and back down, and the left stick, or a pad that is pressed, walks.
+        if (!fist.empty()) { acts.hold("right " + fist, 0.09); }
+        carried_s = acts.wait(0.019).right(highUp(acts.panel, kBeside), 0.02).look(0.02);
         acts.right(pointingAt(acts.panel, kBeside), 0.02).wait(0.019);
-        const std::string stick = with_pad.contains(profile) ? "left trackpad" : "left thumbstick";
-        if (with_pad.contains(profile)) { acts.hold(stick, 0.05); }
-        if (!without_stick.contains(profile)) { acts.push(stick, {0.0, 1.0}, 0.05); }
-        walked.push_back(acts.wait(0.04).look(0.06));
+        if (stick == "trackpad") { acts.hold("left trackpad", 0.05); }
+        if (!stick.empty()) { acts.push("left " + stick, {0.0, 1.0}, 0.05); }
+        walked_s = acts.wait(0.04).look(0.06);
     }
     // Buttons of other controllers are pressed before the right one.
     std::vector<double> clicks, lifts, palms;
@@ -121,8 +111,7 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
         take(profile, other, click, widget);
         // A fist carries the panel up and back down.
         acts.point(kMiddle).hold("right " + std::string(fist), 0.35).wait(0.05);
-        acts.right(highUp(acts.panel), 0.1);
-        lifts.push_back(acts.look(0.05));
+        lifts.push_back(acts.right(highUp(acts.panel), 0.1).look(0.05));
         acts.point(kMiddle).wait(0.2);
         // With the palm turned to the eyes, a pinch hides the panel, and shows it.
         acts.left("position -0.2 1.4 -0.4 look 0.694 1.4 -0.847").wait(0.03);
@@ -132,17 +121,15 @@ TEST_CASE_FIXTURE(AtWork, "every controller and bare hands show the panel, click
     const double bare_end = acts.now_s;
     take("oculus/touch_controller", "aim_activate_ext", "trigger", "right");
     const ViewRun run = runClean(work, acts, kScene + withConfig(work, kMethodPage));
-    for (std::size_t i = 0; i < controllers.size(); ++i) {
-        CAPTURE(controllers[i].first);
-        const std::size_t first = run.frameAt(begins[i]);
-        const bool is_felt = controllers[i].first != "bytedance/pico_g3_controller";
-        CHECK(pulses(run, first + 3, 6) == (is_felt ? 1 : 0));
+    for (const Controller& one : controllers) {
+        CAPTURE(one.profile);
+        const std::size_t first = run.frameAt(one.begin_s);
+        CHECK(pulses(run, first + 3, 6) == (one.profile == "bytedance/pico_g3_controller" ? 0 : 1));
         CHECK(these(run.panels(first + 8).size(), run.panels(first + 13).empty(),
                     run.panels(first + 19).size()) == these(1, true, 1));
-        const double up_m = without_fist.contains(controllers[i].first) ? 0.0 : 0.2,
-                     risen_m = panelOf(run, run.frameAt(carried[i])).middle.y - acts.panel.middle.y;
-        CHECK(std::abs(risen_m - up_m) < 0.002);
-        CHECK(run.beforeEyes(run.frameAt(walked[i])).empty() == without_stick.contains(controllers[i].first));
+        const double risen_m = panelOf(run, run.frameAt(one.carried_s)).position.y - acts.panel.position.y;
+        CHECK(std::abs(risen_m - (one.fist.empty() ? 0.0 : 0.2)) < 0.002);
+        CHECK(run.beforeEyes(run.frameAt(one.walked_s)).empty() == one.stick.empty());
     }
     const std::size_t bare = run.frameAt(bare_begin) + 1;
     CHECK(pulses(run, bare, run.frameAt(bare_end) - bare) == 0);
@@ -191,7 +178,7 @@ TEST_CASE_FIXTURE(AtWork, "a grip that shivers holds; what was pressed elsewhere
     }
     const ViewRun run = runClean(work, acts, kScene);
     const auto lifted = [&](std::size_t i) {
-        return panelOf(run, run.frameAt(looks[i])).middle.y - acts.panel.middle.y;
+        return panelOf(run, run.frameAt(looks[i])).position.y - acts.panel.position.y;
     };
     CHECK(lifted(0) == doctest::Approx(0.0));
     checkLifted(run, looks[1]);
@@ -211,7 +198,7 @@ TEST_CASE_FIXTURE(AtWork, "a grip that shivers holds; what was pressed elsewhere
 TEST_CASE_FIXTURE(AtWork, "rays, hands and the panel are where they should be, and either hand clicks") {
     const glm::dvec3 right_at(0.2, 1.2, -0.35), left_at(-0.2, 1.2, -0.35);
     Acts acts(kSmall);
-    acts.right(lookingAt(right_at, acts.panel.middle)).left(lookingAt(left_at, {-0.2, 0.2, -1.0}));
+    acts.right(lookingAt(right_at, acts.panel.position)).left(lookingAt(left_at, {-0.2, 0.2, -1.0}));
     const double both = acts.wait(0.03).look();
     const double lost = acts.at("controller right off").look();
     acts.at("controller right on").wait(0.05).press("left y");
@@ -245,10 +232,10 @@ TEST_CASE_FIXTURE(AtWork, "rays, hands and the panel are where they should be, a
         return std::min(glm::distance(middle + half, place), glm::distance(middle - half, place));
     };
     CHECK(fromEnd(right_at) < 1e-4);
-    CHECK(fromEnd(acts.panel.middle) < 1e-3);
-    CHECK(run.rays(run.frameAt(lost) + 1).size() == 1);
+    CHECK(fromEnd(acts.panel.position) < 1e-3);
     CHECK(these(countSeen(run, both, kHand), countSeen(run, both, kKnob)) == these(2, 0));
-    CHECK(run.quadsAsWide(run.frameAt(lost) + 1, kHand).size() == 1);
+    const std::size_t one = run.frameAt(lost) + 1;
+    CHECK(these(run.rays(one).size(), run.quadsAsWide(one, kHand).size()) == these(1, 1));
     for (const double seconds : {hidden, gone}) { CHECK(run.panels(run.frameAt(seconds)).empty()); }
     for (const double seconds : {hidden, let_go}) { CHECK(run.rays(run.frameAt(seconds)).empty()); }
     CHECK(run.rays(run.frameAt(pulled)).size() == 1);
@@ -258,7 +245,7 @@ TEST_CASE_FIXTURE(AtWork, "rays, hands and the panel are where they should be, a
     // A fist looks different from an open hand. It holds the scene, which does not move with it.
     CHECK(run.likeness(run.pictureAt(open), run.pictureAt(fist)) == between(15.0, 45.0));
     // The head looks along -x, from (1, 1.6, 0).
-    CHECK(glm::distance(panelOf(run, run.frameAt(moved)).middle, {0.1, 1.5, 0.45}) < 1e-4);
+    CHECK(glm::distance(panelOf(run, run.frameAt(moved)).position, {0.1, 1.5, 0.45}) < 1e-4);
 }
 
 TEST_CASE_FIXTURE(AtWork, "a ring shows where a ray meets the scene; a blocked arc leads nowhere") {
@@ -367,8 +354,7 @@ TEST_CASE_FIXTURE(AtWork, "controllers are drawn where grips are; one teleports 
     CHECK(glm::distance(kept[1].eye - kept[0].eye, {second.x, 0.0, -second.z}) < 1e-4);
 }
 
-TEST_CASE_FIXTURE(AtWork,
-                  "bare hands walk and turn without a page: a pinch teleports or, pulled aside, turns") {
+TEST_CASE_FIXTURE(AtWork, "a pinch of bare hands teleports or, pulled aside, turns, without a page") {
     const glm::dvec2 keep = onScenes("Keep this one");
     const std::string pinch = "right aim_activate_ext";
     Acts acts(kBlind + "extension XR_EXT_hand_tracking off\nprofile ext/hand_interaction_ext\n");

@@ -1,6 +1,5 @@
 // Facts about the viewer's panel: clicks take effect, are visible, and come back when saved.
 #include "app/view/panel/message_picture.h"
-#include "tests/app/view/unchanged_shaders.h"
 #include "tests/app/view/view_acts.h"
 #include "xr/simulated/extensions.h"
 
@@ -41,7 +40,7 @@ TEST_CASE_FIXTURE(AtWork, "what is clicked on the panel is so, and the place is 
     CHECK_FALSE(fs::exists(work.path / "elsewhere"));
     CHECK(run.endSeconds() < acts.now_s - 0.3);
     CHECK_FALSE(run.says("shaders"));
-    CHECK(glm::length(panelOf(run, 8).middle - acts.panel.middle) < 1e-5);
+    CHECK(glm::distance(panelOf(run, 8).position, acts.panel.position) < 1e-5);
     CHECK(std::abs(glm::dot(panelOf(run, 8).orientation, acts.panel.orientation)) > 1.0 - 1e-9);
     const auto size = run.panels(8).at(0).at("size").get<std::array<double, 2>>();
     CHECK(glm::length(glm::dvec2(size[0], size[1]) - kPanelMetres) < 1e-6);
@@ -61,7 +60,6 @@ TEST_CASE_FIXTURE(AtWork, "what is clicked on the panel is so, and the place is 
                 run.periodNs(run.frameAt(let_go))) ==
           these(160, static_cast<int>(std::round(160.0 * scale)), 20'000'000));
     CHECK(run.periodNs(run.frameAt(other_rate)) == 8'333'333);
-
     // Both the viewer and `render` accept the file.
     const std::string said = run.lines("saved as ").at(0);
     const fs::path file = said.substr(said.find("saved as ") + 9);
@@ -99,8 +97,8 @@ TEST_CASE_FIXTURE(AtWork, "the panel comes before the eyes of a wearer who has t
     acts.head("position 0 1.6 0 turn 180 0").wait(0.5);
     const double turned = acts.look(2.0), there = acts.look();
     const ViewRun run = runClean(work, acts, kScene);
-    const auto panelAt = [&](double seconds) { return panelOf(run, run.frameAt(seconds)).middle; };
-    CHECK(glm::distance(panelAt(turned), acts.panel.middle) < 1e-4);
+    const auto panelAt = [&](double seconds) { return panelOf(run, run.frameAt(seconds)).position; };
+    CHECK(glm::distance(panelAt(turned), acts.panel.position) < 1e-4);
     CHECK(glm::distance(panelAt(there), {0.45, 1.5, 0.9}) < 1e-4);
 }
 
@@ -125,13 +123,10 @@ TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a
     const fs::path present = fs::path("edited") / "present" / "present.comp";
     const std::string text = textIn(work.path / present),
                       line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
-    const std::size_t at = text.find(line);
-    REQUIRE(at != std::string::npos);
     fs::create_directory(work.path / "edits");
     for (const auto& [edit, replacement] : {std::pair("1", "    const uvec3 bytes = nonsense;"),
                                             std::pair("2", "    const uvec3 bytes = uvec3(0);")}) {
-        std::ofstream(work.path / "edits" / edit)
-            << text.substr(0, at) + replacement + text.substr(at + line.size());
+        work.write(std::string("edits/") + edit, edited(text, line + " => " + replacement));
     }
     writeCompilerOfChangedShaders(work.path / "tools",
                                   "if [ $name = present ]; then for edit in edits/*; do [ -e $edit ] && mv "
@@ -144,10 +139,9 @@ TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a
     }
     const ViewRun run = runClean(work, acts, kScene + " --shaders edited" + withConfig(work, kMethodPage),
                                  kValidated + " PATH=\"$PWD/tools:$PATH\"");
-    std::size_t count = 0;
-    for (const auto& file : fs::recursive_directory_iterator(kSources)) {
-        count += file.path().extension() == ".comp" ? 1 : 0;
-    }
+    const auto count =
+        std::ranges::count_if(fs::recursive_directory_iterator(kSources),
+                              [](const auto& file) { return file.path().extension() == ".comp"; });
     checkOrder(run,
                {fmt::format("{} shaders reloaded in ", count),
                 "shaders stay as they were: " + present.string() + ":", "nonsense", " shaders reloaded in "});
@@ -193,9 +187,7 @@ TEST_CASE_FIXTURE(AtWork, "tint and ROIs are seen in the eye made from the other
     const double tinted = acts.look();
     acts.click(onMethod("Centre ROI (paper)"));
     const double centred = acts.look();
-    for (const char* name : {"Show how tiles were made", "predicted", "right"}) {
-        acts.click(onMethod(name));
-    }
+    for (const auto name : {"Show how tiles were made", "predicted", "right"}) { acts.click(onMethod(name)); }
     acts.press("right b").wait(0.2).head("position 0.15 1.57 -0.2 rotation 0.1 0.15 0 0.98", 1.0);
     const double walked = acts.now_s - 0.4;
     // So close to the bars that holes open inside the picture.
@@ -224,8 +216,8 @@ TEST_CASE_FIXTURE(AtWork, "tint and ROIs are seen in the eye made from the other
     // The head walked, and every frame matched the eyes' poses.
     for (const double seconds : {walked - 0.3, walked - 0.1, walked}) {
         const std::size_t frame = run.frameAt(seconds);
-        for (const std::size_t e : {0, 1}) {
-            const glm::dvec3 shown = run.viewPlace(frame, e), was = run.loggedEye(frame, e).position;
+        for (const std::size_t side : {0, 1}) {
+            const glm::dvec3 shown = run.viewPlace(frame, side), was = run.loggedEye(frame, side).position;
             for (const int axis : {0, 2}) { CHECK(shown[axis] == doctest::Approx(was[axis]).epsilon(1e-4)); }
         }
     }
@@ -270,14 +262,11 @@ TEST_CASE_FIXTURE(AtWork, "the first start shows three gestures in turn, and no 
         const ViewRun run = runClean(
             work, "rate 20\nsize 64 64\nframes none\nat 23 exit\n",
             kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
+        const auto isMessage = [](const nlohmann::json& quad) {
+            return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y;
+        };
         std::size_t quads = 0;
-        for (std::size_t i = 0; i < run.frames.size(); ++i) {
-            quads += run.quadsWhere(i,
-                                    [](const nlohmann::json& quad) {
-                                        return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y;
-                                    })
-                         .size();
-        }
+        for (std::size_t i = 0; i < run.frames.size(); ++i) { quads += run.quadsWhere(i, isMessage).size(); }
         return quads;
     };
     // Three times seven seconds, minus the first frames, which wait for a file to be read.

@@ -21,9 +21,7 @@ inline std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
     return kinds;
 }
 
-inline std::string listed(const std::set<std::string>& kinds) {
-    return fmt::format("{}", fmt::join(kinds, " "));
-}
+inline std::string listed(const std::set<std::string>& all) { return fmt::format("{}", fmt::join(all, " ")); }
 
 // No frame but the first ones waited or made anything.
 inline void checkQuiet(const Workplace& work, std::size_t first_frames = 45) {
@@ -38,8 +36,7 @@ inline void checkQuiet(const Workplace& work, std::size_t first_frames = 45) {
 inline ViewRun runWatched(const Workplace& work, const std::string& script, const std::string& arguments,
                           const std::string& environment = "") {
     ViewRun run = runView(work, "run", script, arguments, kWatched + " " + environment);
-    INFO(run.outcome.output << run.outcome.errors);
-    CHECK(these(run.outcome.exit_code, run.outcome.errors, run.says("VUID")) == these(0, "", false));
+    checkEnded(run);
     return run;
 }
 

@@ -1,5 +1,5 @@
-// Facts about operations in frames that may wait, as counted by two layers (tests/faults/waits.h): the frames
-// of a running viewer do none of them.
+// Facts about operations that may wait, as two layers count them (tests/faults/waits.h): frames do none of
+// them.
 #include "tests/app/view/view_quiet.h"
 #include "app/view/scenes/kernels_ahead.h"
 #include "tests/engine/stream/moving_frames.h"
@@ -18,15 +18,12 @@ const std::string kBlind = "rate 45\nsize 64 64\nframes none\n", kMasked = "visi
 // A snap turn, a step, the panel away and back again, a hand that points at it; then the session is lost.
 const std::string kStay =
     kStill +
-    "head 4 position 0.2 1.6 -0.1 turn 15 0\n"
-    "axis right thumbstick 1.2 0 0\naxis right thumbstick 1.21 1 0\naxis right thumbstick 1.3 1 0\naxis "
-    "right thumbstick 1.31 0 0\n"
-    "axis left thumbstick 1.6 0 0\naxis left thumbstick 1.61 0 1\naxis left thumbstick 1.9 0 1\naxis left "
-    "thumbstick 1.91 0 0\n"
+    "head 4 position 0.2 1.6 -0.1 turn 15 0\naxis right thumbstick 1.2 0 0\naxis right thumbstick 1.21 1 0\n"
+    "axis right thumbstick 1.3 1 0\naxis right thumbstick 1.31 0 0\naxis left thumbstick 1.6 0 0\n"
+    "axis left thumbstick 1.61 0 1\naxis left thumbstick 1.9 0 1\naxis left thumbstick 1.91 0 0\n"
     "press left y 2.2 2.25\npress left y 2.5 2.55\ncontroller right 2.7 position 0.2 1.2 -0.35\n"
-    "controller right 2.8 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 3.2 lose-session\nhead 4.4 position "
-    "0.2 1.6 -0.1 turn 15 0\n"
-    "head 5 position 0 1.6 0 turn 0 0\nat 5.5 exit\n";
+    "controller right 2.8 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 3.2 lose-session\n"
+    "head 4.4 position 0.2 1.6 -0.1 turn 15 0\nhead 5 position 0 1.6 0 turn 0 0\nat 5.5 exit\n";
 // In which kernels and frames of another method are made, on a thread.
 constexpr double kMethodSeconds = 5.0;
 
@@ -52,9 +49,7 @@ void eachMode(const Modes& modes, const std::function<void(const Workplace&, con
 const Modes kThreeModes{"temporal", "predicted", "shared"};
 
 // Frames may be late.
-void clickSlowly(Acts& acts, const glm::dvec2& share) {
-    acts.point(share).wait(0.25).press("right trigger", 0.3);
-}
+void clickSlowly(Acts& acts, const glm::dvec2& at) { acts.point(at).wait(0.25).press("right trigger", 0.3); }
 
 // The pixels of the left eye's pictures, in frames that show something.
 std::vector<int> widthsOf(const ViewRun& run, std::size_t first_frame) {
@@ -66,9 +61,7 @@ std::vector<int> widthsOf(const ViewRun& run, std::size_t first_frame) {
     return widths;
 }
 
-TEST_CASE(
-    "no frame of a running viewer waits or makes anything after the first second, nor after that of a new "
-    "session") {
+TEST_CASE("after the first second, also of a new session, no frame waits for or makes anything") {
     eachMode({"temporal", "predicted"}, [](const Workplace& work, const std::string& mode) {
         const ViewRun run = runWatched(work, kStay, kWallIn + mode);
         std::map<const Known*, std::set<std::string>> found;
@@ -97,8 +90,7 @@ TEST_CASE("the cut to the other scene of a comparison, and back, waits for nothi
     });
 }
 
-TEST_CASE(
-    "nor does one while pictures are taken, a message appears, and the wearer jumps, turns and comes back") {
+TEST_CASE("nor does one while pictures are taken, messages come, and the wearer jumps, turns and returns") {
     eachMode(kThreeModes, [](const Workplace& work, const std::string& mode) {
         picturesInto(work);
         // One viewpoint is beside the start, one looks the other way.
@@ -152,11 +144,8 @@ TEST_CASE("a scene is exchanged, and a picture of it kept, without a wait; a bro
         const fs::path kept = work.base / "config" / "binosplat";
         CHECK(textIn(kept / "recent-scenes.txt").starts_with(first + "\n" + next + "\n"));
         CHECK_FALSE(contains(textIn(kept / "recent-scenes.txt"), kBroken));
-        std::size_t pictures = 0;
-        for (const auto& file : fs::recursive_directory_iterator(kept)) {
-            pictures += file.path().extension() == ".png" ? 1 : 0;
-        }
-        CHECK(pictures > 0);
+        CHECK(std::ranges::any_of(fs::recursive_directory_iterator(kept),
+                                  [](const auto& file) { return file.path().extension() == ".png"; }));
     });
 }
 
@@ -317,8 +306,7 @@ TEST_CASE_FIXTURE(AtWork, "what is drawn is where the eyes are by the last that 
     REQUIRE(run.frames.size() > 10);
     const std::size_t frame = run.frames.size() / 2;
     const nlohmann::json layer = run.layers(frame, "projection").at(0);
-    const LoggedPose room = poseOf(layer.at("stage_from_space"));
-    const glm::dvec3 drawn = room.position + room.orientation * run.viewPlace(frame, kLeft);
+    const glm::dvec3 drawn = transform(poseOf(layer.at("stage_from_space")), run.viewPlace(frame, kLeft));
     CHECK(drawn.y == doctest::Approx(run.loggedEye(frame, kLeft).position.y).epsilon(1e-5));
 }
 

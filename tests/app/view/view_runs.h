@@ -41,19 +41,14 @@ inline void picturesInto(const Workplace& work) {
 }
 
 // A pose from the log, in OpenXR's axes.
-struct LoggedPose {
-    glm::dvec3 position;
-    glm::dquat orientation;
-};
-inline LoggedPose poseOf(const nlohmann::json& pose) {
+inline Pose poseOf(const nlohmann::json& pose) {
     const auto p = pose.at("position").get<std::array<double, 3>>();
     const auto q = pose.at("orientation").get<std::array<double, 4>>();
-    return {{p[0], p[1], p[2]}, {q[3], q[0], q[1], q[2]}};
+    return {{q[3], q[0], q[1], q[2]}, {p[0], p[1], p[2]}};
 }
 // Where a picture hangs, in STAGE.
-inline LoggedPose stagePose(const nlohmann::json& quad) {
-    const LoggedPose space = poseOf(quad.at("stage_from_space")), in_space = poseOf(quad.at("pose"));
-    return {space.position + space.orientation * in_space.position, space.orientation * in_space.orientation};
+inline Pose stagePose(const nlohmann::json& quad) {
+    return compose(poseOf(quad.at("stage_from_space")), poseOf(quad.at("pose")));
 }
 
 inline Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
@@ -66,13 +61,12 @@ inline Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
 }
 // One side of a picture with both eyes side by side.
 inline Image sideOf(const Image& both, int side) {
-    const glm::uvec2 size(both.size_px.x / 2, both.size_px.y),
-        from(static_cast<std::uint32_t>(side) * size.x, 0);
+    const glm::uvec2 size(both.size_px.x / 2, both.size_px.y), from(static_cast<unsigned>(side) * size.x, 0);
     return partOf(both, from, from + size);
 }
 
 // Where an eye is in STAGE, and the tangents of its field of view.
-struct LoggedEye : LoggedPose {
+struct LoggedEye : Pose {
     double left, right, up, down;
 };
 inline LoggedEye eyeFrom(const nlohmann::json& eye) {
@@ -133,10 +127,8 @@ struct ViewRun {
 
     // The layers of one type in a frame.
     [[nodiscard]] std::vector<nlohmann::json> layers(std::size_t frame, const std::string& type) const {
-        std::vector<nlohmann::json> found;
-        for (const auto& layer : frames.at(frame).at("layers")) {
-            if (layer.at("type") == type) { found.push_back(layer); }
-        }
+        auto found = frames.at(frame).at("layers").get<std::vector<nlohmann::json>>();
+        std::erase_if(found, [&](const nlohmann::json& layer) { return layer.at("type") != type; });
         return found;
     }
     // The scene's view for an eye.
@@ -202,6 +194,14 @@ inline ViewRun runView(const Workplace& work, const std::string& name, const std
     return run;
 }
 
+// Arguments for a place in a scene, and a direction of view.
+inline std::string viewedFrom(const glm::dvec3& eye, const glm::dvec3& look, const glm::dvec3& up) {
+    const auto text = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
+    return fmt::format(" --eye {} --look {} --up {}", text(eye), text(look), text(up));
+}
+// From OpenXR's axes to the scene's.
+inline glm::dvec3 inScene(const glm::dvec3& v) { return {v.x, -v.y, -v.z}; }
+
 // An argument for a config with these lines.
 inline std::string withConfig(const Workplace& work, const std::string& lines) {
     work.write("view.toml", lines);
@@ -209,6 +209,22 @@ inline std::string withConfig(const Workplace& work, const std::string& lines) {
 }
 inline const std::string kMethodPage = "[view]\npanel-page = \"method\"\n",
                          kScenesPage = "[view]\npanel-page = \"scenes\"\n";
+
+// A shader compiler in `folder`, which must come first in PATH: it takes unchanged shaders from the build,
+// since 19 runs of the real one take seconds. For each shader, the shell lines `then` run afterwards; they
+// can use its $name and its file, $last.
+inline void writeCompilerOfChangedShaders(const fs::path& folder, const std::string& then = "") {
+    fs::create_directory(folder);
+    const fs::path compiler = folder / "glslangValidator";
+    std::ofstream(compiler)
+        << "#!/bin/sh\nfor word; do case $last in -o) out=$word ;; esac; last=$word; done\n"
+           "name=$(basename $last .comp)\n"
+           "if cmp -s $last '" BINOSPLAT_SOURCE_DIR "/shaders/'*/$name.comp; then cp '" BINOSPLAT_BUILD
+           "/shaders/embedded/'$name.spv $out; else PATH=${PATH#*:} glslangValidator \"$@\"; fi\n"
+           "status=$?\n" +
+               then + "exit $status\n";
+    fs::permissions(compiler, fs::perms::owner_all);
+}
 
 // What the viewer saved about the slanted wall.
 inline fs::path wallSettings(const Workplace& work) {

@@ -1,5 +1,4 @@
-// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated
-// headset: what is seen, and where.
+// Facts about what `binosplat view` shows, and where, while a script of the simulated headset drives it.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view) {
@@ -22,8 +21,7 @@ struct Angles {
     }
 };
 
-// For pictures from where the wearer begins. Two of the same view may differ a little, since the runtime
-// turns them by the last digit of a float.
+// Two pictures of the same view may differ a little: the runtime turns them by the last digit of a float.
 const std::string kBeginning = "rate 100\nsize 128 128\nframes every 5\n";
 constexpr double kSamePictureDb = 28.0, kOtherPictureDb = 25.0;
 
@@ -79,9 +77,8 @@ TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show the view's 
     // There and back by some ten degrees, half a degree per frame, with a step and a tilt.
     const std::string script =
         "rate 50\nheadset headset.toml\nframes every 5\nhead 0.4 position 0 1.6 0 turn 0 0\n"
-        "head 0.8 position 0.05 1.6 0 rotation -0.02 -0.04 0.01 1\nhead 1.2 position 0.05 1.62 -0.05 "
-        "rotation 0.02 0.05 0.03 1\nat 1.3 "
-        "exit\n";
+        "head 0.8 position 0.05 1.6 0 rotation -0.02 -0.04 0.01 1\n"
+        "head 1.2 position 0.05 1.62 -0.05 rotation 0.02 0.05 0.03 1\nat 1.3 exit\n";
     const auto runWith = [&](const std::string& axes) {
         return runClean(work, script,
                         "builtin:fence --load-first --hide-panel --hide-hands --mode shared --axes " + axes);
@@ -109,11 +106,11 @@ TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show the view's 
 }
 
 TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files") {
-    const std::string script =
-        "rate 90\nsize 96 96\nframes every 3\nhead 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn "
-        "10 5\n";
     for (const char* name : {"first", "second"}) {
-        checkClean(runView(work, name, script, kWall + " --hide-panel --frames 22"));
+        checkClean(runView(work, name,
+                           "rate 90\nsize 96 96\nframes every 3\nhead 0 position 0 1.6 0\n"
+                           "head 0.2 position 0.1 1.6 -0.1 turn 10 5\n",
+                           kWall + " --hide-panel --frames 22"));
     }
     CHECK(work.runCommand("diff -r first second").exit_code == 0);
 }
@@ -121,28 +118,26 @@ TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files"
 TEST_CASE_FIXTURE(AtWork, "--frames counts those of the scene, not those before it is loaded") {
     const ViewRun run = runClean(work, "rate 90\nsize 96 96\nframes none\n",
                                  "builtin:fence --mode shared --hide-hands --hide-panel --frames 12");
-    const std::vector<std::string> shows = run.lines("shows builtin:fence");
-    REQUIRE(shows.size() == 1);
+    const std::vector<std::string> shows = run.lines("shows builtin:fence"),
+                                   pictures = run.lines("its first picture has 96x96 pixels an eye");
+    REQUIRE(these(shows.size(), pictures.size()) == these(1, 1));
     const std::size_t before = frameOf(shows[0]);
     CHECK(before > 4);  // in lock-step they come at once
-    const std::vector<std::string> pictures = run.lines("its first picture has 96x96 pixels an eye");
-    REQUIRE(pictures.size() == 1);
     CHECK(frameOf(pictures[0]) == before);
     CHECK(run.frames.size() == within(before + 12, before + 16));  // STOPPING takes a few frames
 }
 
 TEST_CASE_FIXTURE(AtWork, "the wearer begins at the scene's own view, also when the room recentres") {
     const std::string scene = "builtin:fence --load-first --hide-hands --mode shared";
-    const ViewRun usual =
-        runClean(work,
-                 kBeginning +
-                     "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\n"
-                     "head 0.15 position 0.8 1.4 0.5 turn 70 0\nhead 0.6 position 0.8 1.4 0.5 turn 70 0\n"
-                     "head 0.65 position 0.8 1.4 0.5 turn -130 25\n"
-                     "at 0.22 recentre\nat 0.7 recentre\nat 1.2 exit\n",
-                 scene);
-    CHECK(usual.says("1.60 m above the floor"));
-    CHECK(usual.says("frame 22: the room now begins where the wearer stands, 1.40 m above the floor"));
+    const ViewRun usual = runClean(
+        work,
+        kBeginning +
+            "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
+            "head 0.6 position 0.8 1.4 0.5 turn 70 0\nhead 0.65 position 0.8 1.4 0.5 turn -130 25\n"
+            "at 0.22 recentre\nat 0.7 recentre\nat 1.2 exit\n",
+        scene);
+    checkOrder(usual, {"1.60 m above the floor",
+                       "frame 22: the room now begins where the wearer stands, 1.40 m above the floor"});
     for (const std::size_t frame : {5, 10, 22, 23, 25, 105}) { checkAtTheBeginning(usual, frame); }
     CHECK(usual.likeness(5, 20) < kOtherPictureDb);
     CHECK(usual.likeness(5, 55) > kSamePictureDb);  // out of the dark

@@ -38,8 +38,7 @@ public:
         pclose(pipe_);
     }
 
-    // What it printed from the last awaited line up to the end of the next line that contains `words`, which
-    // must come.
+    // What it printed since the last awaited line, to the end of the next one with `words`, which must come.
     std::string await(const std::string& words) {
         std::size_t found = said_.find(words, read_), end = std::string::npos;
         while (found == std::string::npos || (end = said_.find('\n', found)) == std::string::npos) {
@@ -113,11 +112,10 @@ public:
         const auto number = [&](std::size_t index) { return bigWordAt(bytes, 4 * index); };
         constexpr std::size_t kBytesPerColour = 12;
         const std::size_t start = number(0) + kBytesPerColour * number(19), row_bytes = number(12);
-        const Image image = makePicture({number(4), number(5)}, [&](std::uint32_t x, std::uint32_t y) {
+        return makePicture({number(4), number(5)}, [&](std::uint32_t x, std::uint32_t y) {
             const std::uint32_t colour = bigWordAt(bytes, start + row_bytes * y + 4 * std::size_t{x});
             return glm::vec3(colour >> 8 & 255, colour >> 16 & 255, colour >> 24) / 255.0f;
         });
-        return image;
     }
 
 private:
@@ -201,8 +199,8 @@ private:
     void* display_ = nullptr;
 };
 
-// One screen for all tests, with a mouse and keys. A client stays connected: without clients, the server
-// restarts with its mouse in the middle.
+// One screen for all tests. A client stays connected: without any, the server restarts, its mouse in the
+// middle.
 struct Desk {
     Workplace folder;
     Screen screen{folder.path};
@@ -220,10 +218,9 @@ inline std::vector<std::string> dragOf(int button, const glm::dvec2& from, const
     return {moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)};
 }
 inline void hands(const std::string& does) {
-    const std::string command =
-        "DISPLAY=" + desk().screen.name + " timeout 60 xdotool " + does + " >/dev/null";
-    INFO(command);
-    REQUIRE(std::system(command.c_str()) == 0);
+    const std::string line = "DISPLAY=" + desk().screen.name + " timeout 60 xdotool " + does + " >/dev/null";
+    INFO(line);
+    REQUIRE(std::system(line.c_str()) == 0);
 }
 
 // A number of the window with this name, as xdotool prints it: "WINDOW=2097154", "WIDTH=648" and so on.
@@ -246,9 +243,8 @@ inline void clickCross(const std::string& window_name) {
 inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
     return "env DISPLAY=" + desk(dpi).screen.name +
            " WAYLAND_DISPLAY= DBUS_SESSION_BUS_ADDRESS=unix:path=/nonexistent BINOSPLAT_VALIDATION=1 "
-           "SIMULATED_OPENXR_CLOCK=real "
-           "XDG_CONFIG_HOME=\"$PWD/../config\" "
-           "PATH=\"$PWD/tools:$PATH\" '" BINOSPLAT_PROGRAM "' view " +
+           "SIMULATED_OPENXR_CLOCK=real XDG_CONFIG_HOME=\"$PWD/../config\" PATH=\"$PWD/tools:$PATH\" "
+           "'" BINOSPLAT_PROGRAM "' view " +
            arguments;
 }
 
