@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <future>
 #include <vector>
 
 namespace binosplat {
@@ -60,23 +61,38 @@ void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<
     small.makeKernels(seen, other);
 }
 
-void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptions& camera,
-                   const FramesAhead& ahead, const std::function<void()>& between) {
-    const glm::uvec2 tiles = tilesOf({width_px, 16});
-    std::vector<std::uint8_t> hidden(std::size_t{tiles.x} * tiles.y, 0);
-    hidden[0] = 1;
-    for (unsigned variant = 0; variant < 4; ++variant) {
-        const bool canted = (variant & 1) != 0, hides = (variant & 2) != 0;
-        const std::array<Eye, 2> eyes = smallEyes(width_px, canted);
-        between();
-        FrameSettings settings = frameSettings(camera, ahead.stereo, kWearersOrder);
-        settings.half_floats = true;
-        settings.keep_history = true;
-        settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
-        settings.keep_classes = ahead.tint;
-        if (hides) { settings.hidden_tiles = {hidden, hidden}; }
-        makeKernelsOf(small, settings, eyes);
+// A frame of this shape, without a picture's height.
+struct Shape {
+    std::uint32_t width_px = 0;
+    bool canted = false, hides = false;
+};
+
+std::vector<Shape> shapesOf(const FramesAhead& ahead) {
+    std::vector<Shape> shapes;
+    for (const bool canted : {false, true}) {
+        for (const bool hides : {false, true}) {
+            for (const std::uint32_t width_px : widthsOf(ahead.size_px.x)) {
+                shapes.push_back({width_px, canted, hides});
+            }
+        }
     }
+    return shapes;
+}
+
+void makeKernelsOf(const Shape& shape, StereoFrame& small, const CameraOptions& camera,
+                   const FramesAhead& ahead) {
+    FrameSettings settings = frameSettings(camera, ahead.stereo, kWearersOrder);
+    settings.half_floats = true;
+    settings.keep_history = true;
+    settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
+    settings.keep_classes = ahead.tint;
+    if (shape.hides) {
+        const glm::uvec2 tiles = tilesOf({shape.width_px, 16});
+        std::vector<std::uint8_t> hidden(std::size_t{tiles.x} * tiles.y, 0);
+        hidden[0] = 1;
+        settings.hidden_tiles = {hidden, hidden};
+    }
+    makeKernelsOf(small, settings, smallEyes(shape.width_px, shape.canted));
 }
 
 }  // namespace
@@ -98,12 +114,21 @@ bool FramesAhead::isLike(const FramesAhead& other) const {
 void makeKernelsAhead(const Context& context, PassKernels& kernels, const GpuScene& scene,
                       const CameraOptions& camera, const FramesAhead& ahead,
                       const std::function<void()>& between) {
-    try {
+    const std::vector<Shape> shapes = shapesOf(ahead);
+    std::atomic<std::size_t> taken = 0;
+    // Two threads begin at either end, where most kernels differ.
+    const auto make = [&](bool from_end) {
         // Never drawn.
         StereoFrame small(context, scene, kernels, {.first_capacity = {1, 1}, .threads_per_cell = 0});
-        for (const std::uint32_t width : widthsOf(ahead.size_px.x)) {
-            makeKernelsAt(width, small, camera, ahead, between);
+        for (std::size_t done = 0; taken++ < shapes.size(); ++done) {
+            between();
+            makeKernelsOf(shapes[from_end ? shapes.size() - 1 - done : done], small, camera, ahead);
         }
+    };
+    try {
+        std::future<void> others = std::async(std::launch::async, make, true);
+        make(false);
+        others.get();
     } catch (const Error&) {}  // reported when a frame needs it
 }
 

@@ -41,7 +41,7 @@ struct FramesAhead {
 
 // Makes `kernels` of whatever frames of `scene` may come without a click: those of the chosen method, with
 // and without hidden tiles and foveation, with parallel and canted eyes. Takes as long as the driver needs;
-// `between` is called now and then and may throw.
+// `between` is called now and then, by two threads, and may throw.
 void makeKernelsAhead(const Context& context, PassKernels& kernels, const GpuScene& scene,
                       const CameraOptions& camera, const FramesAhead& ahead,
                       const std::function<void()>& between);
