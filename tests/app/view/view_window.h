@@ -240,8 +240,8 @@ inline void clickCross(const std::string& window_name) {
 }
 
 // With the real clock: in lock-step it would draw as fast as it can while the input is on its way.
-inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
-    return "env DISPLAY=" + desk(dpi).screen.name +
+inline std::string viewOnDesk(const std::string& arguments, int dpi = 96, const std::string& display = "") {
+    return "env DISPLAY=" + (display.empty() ? desk(dpi).screen.name : display) +
            " WAYLAND_DISPLAY= DBUS_SESSION_BUS_ADDRESS=unix:path=/nonexistent BINOSPLAT_VALIDATION=1 "
            "SIMULATED_OPENXR_CLOCK=real XDG_CONFIG_HOME=\"$PWD/../config\" PATH=\"$PWD/tools:$PATH\" "
            "'" BINOSPLAT_PROGRAM "' view " +
