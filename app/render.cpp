@@ -102,6 +102,7 @@ void finishPath(const RenderOptions& options, const HeadPath& path, std::size_t 
     if (!options.video) { return; }
     writeFilm(options.out, path.film_pattern, files.staging() / "video.mp4", path.rate_hz, filmTags(options));
     files.publish();
+    fmt::print("film: {}\n", (options.out / "video.mp4").string());
 }
 
 }  // namespace
