@@ -175,7 +175,7 @@ FrameSettings ScenePictures::settingsFor(bool at_rest) const {
     frame.near = options_.near.value_or(std::min(usual, kNearShare * drawn_.camera.distance()));
     // The largest quarter, which is as large as the whole with one sample per pixel.
     frame.most_px = quarterOf({}, drawn_.part_px, 3, samples()).size_px;
-    frame.half_floats = true;
+    frame.half_floats = frame.surface_depths = true;
     frame.keep_both_depths = true;
     frame.keep_classes = settings.tint;
     frame.keep_history = !at_rest;

@@ -95,7 +95,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.near *= scale;
     frame.units_per_metre = scale;
     frame.keep_depth = frame.keep_both_depths = headset.images->takesDepth();
-    frame.half_floats = true;
+    frame.half_floats = frame.surface_depths = true;
     frame.keep_classes = settings.tint;
     frame.gazes = views.gazes;
     frame.times_passes = settings.page == PanelPage::kMethod;

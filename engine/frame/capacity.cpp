@@ -144,6 +144,7 @@ void FrameMemory::fitPicture(Picture& picture, glm::uvec2 size_px, glm::uvec2 me
     };
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
+    picture.of_surface = kept.depth && kept.surface;
     fit(picture.colours, "colours", true, [&](glm::uvec2 size) { return colourBytes(size, kept); });
     fit(picture.depths, "depths", kept.depth && !kept.history,
         [&](glm::uvec2 size) { return pixels(size) * sizeof(float); });

@@ -219,6 +219,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
              .is_masked = !settings.hidden_tiles[static_cast<std::size_t>(e)].empty(),
              .tiles_hidden = countHidden(settings.hidden_tiles[static_cast<std::size_t>(e)]),
              .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
+                      .surface = settings.surface_depths && settings.half_floats && !keeps_history &&
+                                 !reprojects(mode),
                       .moments = is_first && settings.keep_moments,
                       .half_floats = settings.half_floats,
                       .cut = settings.mesh_depths[static_cast<std::size_t>(e)].has_value(),

@@ -42,6 +42,9 @@ struct FrameSettings {
     bool keep_depth = true;  // D of the dominant eye, for readDominantDepth
     // Also D of the affiliated eye; where that is not rendered, alpha over its inverse depth.
     bool keep_both_depths = false;
+    // Instead of D: A times the depth at which blending passes a half, so that D/A is the depth of a surface.
+    // For display, with half floats, in modes that reproject nothing.
+    bool surface_depths = false;
     bool keep_moments = false;  // I and J of the dominant eye, for readInverseDepthMoments
     // How each pixel of the affiliated eye came about, for readPixelClasses and the report's counters.
     bool keep_classes = false;

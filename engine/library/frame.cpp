@@ -56,6 +56,7 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const AskedFrame& asked) {
     settings.keep_history = hasHistory(settings.mode);
     settings.times_passes = false;
     settings.keep_depth = settings.keep_both_depths = (frame.flags & BSP_FRAME_DEPTH) != 0;
+    settings.surface_depths = !settings.keep_depth;  // for a target, by which its owner may reproject it
     settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
     settings.stereo.budget = frame.budget == 0.0 ? kUsualBudget : std::max(frame.budget, 0.0);
     settings.stereo.move_cost = kDefaultMoveCost;

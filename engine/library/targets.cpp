@@ -113,6 +113,7 @@ void TargetImages::record(Commands& commands, const Picture& picture, const bsp_
         pass.half_colours = picture.colours.address<gpu::uvec2>();
         pass.depths = picture.depths.address<float>();
         pass.words = picture.words.address<gpu::uint>();
+        pass.of_surface = picture.of_surface ? 1 : 0;
         pass.pixels = pixels_.address<gpu::uint>();
         if (has_depth) { pass.device_depths = depthsOf(view, picture.size_px).address<float>(); }
         if (tests) { pass.mesh_depths = pass.device_depths; }

@@ -41,6 +41,7 @@ struct Picture {
     Buffer colours;            // four floats per pixel, or four half floats
     bool half_floats = false;  // which
     Buffer depths = {};        // D, a float per pixel, if it is wanted and not in the words
+    bool of_surface = false;   // D/A is the depth of a surface in every pixel, see gpu::RasterizePass
     // If later pictures are made from this one:
     Buffer words = {};  // a word per pixel, lib/moving_pixel.glsl
     Buffer tiles = {};  // gpu::HistoryTile

@@ -164,7 +164,8 @@ void recordRasterized(const Recording& recording, const KeyValues& sorted) {
         .is_light = is_light,
         .splats_apart = recording.splats.capacity,
         .rank_bits = recording.format.rank_bits,
-        .is_dimmed = recording.scene.traits().is_dimmed};
+        .is_dimmed = recording.scene.traits().is_dimmed,
+        .keeps_surface = targets.kept.surface};
     const Kernel& kernel = recording.kernels.get(rasterizeKernel(recording.kernels.threadsPerCell(),
                                                                  targets.kept, recording.scene.splatKind(),
                                                                  recording.listsFull(), targets.coarse));

@@ -23,6 +23,7 @@ namespace binosplat {
 // What the rasterizer writes in addition to the colour.
 struct Kept {
     bool depth = false;    // D, to Picture::depths
+    bool surface = false;  // instead: A times the depth of the surface, see RasterizePass
     bool moments = false;  // I and J
     bool moving = false;   // the picture is going to be warped into the other eye
     // Only even rows are warped; needs kDepthInverse, and no moments kept.

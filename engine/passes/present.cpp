@@ -59,6 +59,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.half_colours = eye.picture->colours.address<gpu::uvec2>();
     pass.depths = eye.picture->depths.address<float>();
     pass.words = eye.picture->words.address<gpu::uint>();
+    pass.of_surface = eye.picture->of_surface ? 1 : 0;
     if (eye.tinted_by != nullptr) {
         pass.tile_kinds = eye.tinted_by->tileKinds();
         pass.pixel_classes = eye.tinted_by->pixelClasses();

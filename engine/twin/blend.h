@@ -14,6 +14,7 @@ struct PixelState {
     double transmittance = 1.0;
     double weight = 0.0;                                                   // A
     double depth = 0.0, inverse_depth = 0.0, inverse_depth_squared = 0.0;  // D, I, J
+    double surface_depth = 0.0;
     bool open = true;
 };
 
@@ -29,6 +30,7 @@ inline bool blend(PixelState& pixel, const ProjectedSplat& splat, const Hit& hit
     pixel.colour += weight * splat.colour;
     pixel.weight += weight;
     pixel.depth += weight * hit.depth;
+    if (pixel.transmittance > 0.5 && transmittance <= 0.5) { pixel.surface_depth = hit.depth; }
     if (inverse_moments) {
         const double inverse_depth = 1.0 / hit.depth;
         pixel.inverse_depth += weight * inverse_depth;
@@ -79,7 +81,8 @@ struct Tile {
                 const std::size_t place =
                     static_cast<std::size_t>(y) * picture.size_px.x + static_cast<std::size_t>(x);
                 picture.rgba[place] = shownOf(pixel, settings);
-                picture.depth[place] = pixel.depth;
+                picture.depth[place] =
+                    settings.surface_depths ? pixel.weight * pixel.surface_depth : pixel.depth;
                 if (settings.inverse_depth_moments) {
                     picture.inverse_depth[place] = pixel.inverse_depth;
                     picture.inverse_depth_squared[place] = pixel.inverse_depth_squared;

@@ -27,6 +27,7 @@ struct Settings {
     // nearer; empty: no mesh.
     std::span<const double> mesh_depths = {};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
+    bool surface_depths = false;  // instead of D: A times the depth at which the transmittance passes a half
     int threads = 2;
     double* seconds = nullptr;  // render(): if given, an array of kPassCount, filled with each pass's time
 };

@@ -55,7 +55,8 @@ vec4 unpackBehind(uint bytes) {
 // Of all that a pixel shows: of D/A, or as its word has it.
 float inverseDepthAt(uint i) {
     if (!isThere(uvec2(pass.words))) {
-        return colourAt(pass.colours, pass.half_colours, i).a / pass.depths.at[i];
+        const float depth_sum = pass.depths.at[i];
+        return depth_sum > 0 ? colourAt(pass.colours, pass.half_colours, i).a / depth_sum : 0;
     }
     const uint word = pass.words.at[i];
     return word == 0 ? 0 : inverseDepthOf(word);
@@ -137,7 +138,9 @@ void main() {
         // Of what is more of the pixel: infinitely far where that is nothing, and the mesh's depth where
         // there is one.
         const bool is_shown = inverse_depth > 0 && pixel.a >= 0.5;
-        if (is_shown && !has_mesh) { inverse_depth = surfaceDepth(ivec2(at), inverse_depth, pixel.a); }
+        if (is_shown && !has_mesh && pass.of_surface == 0) {
+            inverse_depth = surfaceDepth(ivec2(at), inverse_depth, pixel.a);
+        }
         const float own = clamp((is_shown ? inverse_depth * pass.depth_scale : 0) + pass.depth_offset, 0, 1);
         pass.device_depths.at[i] = has_mesh && !is_shown ? mesh_depth : own;
     }

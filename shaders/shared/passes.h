@@ -121,6 +121,9 @@ struct RasterizePass {
     uint splats_apart;  // as in ProjectPass
     uint rank_bits;     // as in BinPass
     uint is_dimmed;     // as in ProjectPass
+    // 1: D is instead A times the depth at which blending passes a half. With half floats, for pictures from
+    // which none is reprojected.
+    uint keeps_surface;
 };
 
 // contribute: how much each splat contributes to an eye's picture and, compared with a wanted picture, in
@@ -326,6 +329,7 @@ struct PresentPass {
     uint over;         // 1: blended over the content of `pixels`; then the picture has no background
     uint is_cut;       // 1: splats were tested one by one as they were blended, so pixels are not
     uint kept_bits;    // bits in each word of `pixels` that stay as they are, for a picture of both eyes
+    uint of_surface;   // 1: D/A is a surface's depth, see RasterizePass
 };
 
 // turn: shows a presented picture in a view with other axes.

@@ -19,7 +19,7 @@
 #include "lib/gaze.glsl"
 
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
-layout(constant_id = 1) const bool kDepth = true;         // D is summed
+layout(constant_id = 1) const bool kDepth = true;         // D is kept
 layout(constant_id = 2) const
     bool kMoments = false;  // I and J are, as for a picture that is going to be warped
 layout(constant_id = 3) const bool kHalfColours = false;
@@ -70,6 +70,9 @@ vec2 moments[kPixels];
 float mesh_inverse_depth[kPixels];  // of what cuts through the splats
 float transmittance[kPixels];       // negated once the pixel takes no more light
 bool any_open;
+
+bool isOfSurface() { return kHalfColours && pass.keeps_surface != 0; }
+float depthSum(uint p, float alpha) { return isOfSurface() ? alpha * depth[p] : depth[p]; }
 
 // The numbers of a batch's splat.
 struct BatchSplat {
@@ -125,10 +128,14 @@ void blend(BatchSplat splat, vec2 first_px, float apart, uint max_inverse_depth_
             full_weight > 0 ? transmittance[p] * max(1 - opacity, kMinPassing) : transmittance[p];
         const bool closes = after < kMinTransmittance && after >= 0;
         const float weight = closes ? 0 : full_weight;
+        const bool is_half = transmittance[p] > 0.5 && after <= 0.5;
         transmittance[p] = closes ? -transmittance[p] : after;
         most_open = max(most_open, transmittance[p]);
         colour[p] += weight * splat.colour;
-        if (kDepth) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
+        if (kDepth) {
+            const float splat_z = kSplatKind != kDiscs || on_disc ? z : centre_z;
+            depth[p] = !isOfSurface() ? depth[p] + weight * splat_z : is_half ? splat_z : depth[p];
+        }
         if (kMoments && (!kEvenRows || (p & 1) == 0)) {
             const float weighted = weight * inverse_z;
             moments[p].x += weighted;
@@ -302,7 +309,7 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
             if (kHistory && isMade()) { addError(error, shown, colours, at); }
             if (!kMeasures || !is_wider) {
                 putColour(FloatColours(colours), HalfColours(colours), at, vec4(shown, 1 - left));
-                if (kDepth && isThere(depths)) { Floats(depths).at[at] = depth[p]; }
+                if (kDepth && isThere(depths)) { Floats(depths).at[at] = depthSum(p, 1 - left); }
                 if (keeps_moments) { Vec2s(sums).at[at] = moments[p]; }
                 if (moves && (!kEvenRows || (pixel.y & 1) == 0)) {
                     Uints(moving).at[pixel.y * row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
@@ -332,7 +339,7 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         const float left = abs(transmittance[p]);
         putSample(cellIndex(), first + ivec2(0, p), vec4(shownOf(colour[p], left), 1 - left),
-                  left < 1 ? depth[p] / (1 - left) : 0,
+                  left < 1 ? depthSum(p, 1 - left) / (1 - left) : 0,
                   kHistory ? toMove(1 - left, depth[p], moments[p]) : 0);
     }
     barrier();

@@ -1,5 +1,6 @@
 // Facts about the depth of whole frames that a headset gets.
 #include "engine/passes/present.h"
+#include "engine/twin/reference.h"
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(submitted_depth) {
@@ -17,6 +18,7 @@ std::vector<float> presentDepths(Gpu& gpu, StereoFrame& frame, int eye) {
     pass.half_colours = picture.colours.address<gpu::uvec2>();
     pass.depths = picture.depths.address<float>();
     pass.words = picture.words.address<gpu::uint>();
+    pass.of_surface = picture.of_surface ? 1 : 0;
     pass.pixels = pixels.address<gpu::uint>();
     pass.device_depths = depths.address<float>();
     pass.size_px = picture.size_px;
@@ -87,6 +89,36 @@ TEST_CASE_FIXTURE(Gpu, "a pixel at a wall's edge has the depth of that wall or o
             CHECK(between.submitted * 20 <= between.mean);
         }
     }
+}
+
+TEST_CASE_FIXTURE(Gpu, "depth for display is that of the surface at which blending passes a half") {
+    const ViewedScene view = viewBuiltin("builtin:atelier", {96, 96});
+    const GpuScene scene(context(), view.scene);
+    reference::Settings exact{.near = static_cast<double>(kNear), .surface_depths = true}, mean = exact;
+    mean.surface_depths = false;
+    const reference::Picture surface = reference::render(view.scene, view.eye, exact),
+                             usual = reference::render(view.scene, view.eye, mean);
+    FrameSettings settings = makeSettings(Mode::kMono);
+    settings.near = kNear;
+    settings.half_floats = settings.surface_depths = true;
+    KeptFrame frame(context(), scene);
+    frame.render(std::array{view.eye}, settings);
+    const std::vector<float> submitted = presentDepths(*this, frame, kLeft);
+    const Image sums = frame.readDepth(kLeft);
+    std::size_t seen = 0, kept_off = 0, submitted_off = 0, mean_off = 0;
+    for (std::size_t i = 0; i < submitted.size(); ++i) {
+        const double alpha = surface.rgba[i].a, depth = surface.depth[i] / alpha;
+        if (alpha < 0.51) { continue; }
+        const auto isOff = [&](double other) { return std::abs(other / depth - 1.0) > 0.01; };
+        ++seen;
+        kept_off += isOff(static_cast<double>(sums.values[i]) / alpha);
+        submitted_off += isOff(static_cast<double>(submitted[i]));
+        mean_off += isOff(usual.depth[i] / alpha);
+    }
+    CAPTURE(seen);
+    CHECK(kept_off * 200 <= seen);
+    CHECK(submitted_off * 50 <= seen);
+    CHECK(mean_off * 5 > seen);
 }
 
 }  // SUITE(submitted_depth)

@@ -57,7 +57,8 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
                                 .see_through = how.see_through,
                                 .over = !is_alone && shown.kept_bits == 0,
                                 .is_cut = how.is_cut,
-                                .kept_bits = shown.kept_bits};
+                                .kept_bits = shown.kept_bits,
+                                .of_surface = 0};
     gpu.dispatch(gpu.kernel(PresentKernel{.half_colours = shown.halves}), pass,
                  (shown.size_px + glm::uvec2(15, 7)) / glm::uvec2(16, 8));
     return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
