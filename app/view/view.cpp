@@ -189,7 +189,9 @@ void runView(const ViewOptions& asked) {
             throw Error(ExitCode::kNoDevice,
                         fmt::format("{}; no headset: {}", WindowSystem::whyNone(), error.what()));
         }
-        FrameLog::print(fmt::format("the scene is shown in a window; no headset: {}", error.what()));
+        // Without what could be done about that.
+        const std::string why = error.what();
+        FrameLog::print("the scene is shown in a window; no headset: " + why.substr(0, why.find("; ")));
         showInWindow();
     }
 }

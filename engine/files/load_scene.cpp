@@ -92,14 +92,6 @@ constexpr std::array<SceneFormat, 10> kSceneFormats{{
      }},
 }};
 
-std::string listFormats() {
-    std::string names;
-    for (const SceneFormat& format : kSceneFormats) {
-        names += (names.empty() ? "" : ", ") + std::string(format.name);
-    }
-    return names;
-}
-
 // If a file changes meanwhile, that is the reason for anything else that is wrong with it.
 Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, const Progress& progress) {
     const auto requireUnchanged = [&] {
@@ -186,11 +178,13 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
         const SceneSeries series(source.path);
         return loadOne(series.nameOf(0), fmt::format("a moving scene of {} frames", series.size()));
     }
-    check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path,
-          listFormats());
+    check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file", source.path);
     const std::string other = describeOther(source.file->peek(std::size_t{1} << 16), source.path);
     check(other.empty(), "{}: {}", source.path, other);
-    fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source.path, listFormats());
+    fail(
+        "{}: not a scene file of a known format, expected PLY, SOG, SPZ, glTF, .ksplat, .splat or "
+        "builtin:NAME",
+        source.path);
 }
 
 }  // namespace
