@@ -14,7 +14,7 @@ constexpr int kRate = 10;
 constexpr double kRound = 10.0;  // seconds
 // After this many rounds, everything that is kept for later exists: two scenes were shown in turn, and the
 // panel has pictures of both. For longer walks, ten minutes.
-constexpr int kFewestWarm = 5, kMostWarm = 60;
+constexpr int kFewestWarm = 10, kMostWarm = 60;
 
 // Rounds of ten seconds. The wearer stands still whenever the panel appears, so that it can be pointed at.
 std::string walkOf(int rounds, const std::string& folder) {
