@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <new>
 #include <string_view>
 #include <utility>
@@ -22,13 +20,7 @@ constexpr long kBufferBytes = 1 << 18;
 constexpr std::uint64_t kLongestErrorPage = 1 << 16;
 // Fewer bytes than this within the time limit count as none.
 constexpr std::uint64_t kLeastBytes = 1024;
-constexpr std::size_t kLongestVersion = 256;
 constexpr long kOk = 200, kPartial = 206, kNoSuchRange = 416;
-
-bool isPlain(const std::string& text) {
-    return text.size() <= kLongestVersion &&
-           std::ranges::all_of(text, [](unsigned char letter) { return std::isprint(letter) != 0; });
-}
 
 // Another attempt may find the server in a better state.
 bool isBusy(long status) {
@@ -225,27 +217,6 @@ bool Transfer::isNoRest() const {
     return kept_bytes_ > 0 && (answer == kNoSuchRange || (answer == kPartial && !isTheRest()));
 }
 
-std::optional<Transfer::ContentRange> Transfer::contentRange() const {
-    constexpr std::string_view kUnit = "bytes ";
-    const std::string text = header("Content-Range");
-    const std::size_t slash = text.find('/');
-    if (!text.starts_with(kUnit) || slash == std::string::npos) { return std::nullopt; }
-    ContentRange range;
-    const char *const from = text.data() + kUnit.size(), *const end = text.data() + text.size();
-    const auto [after, error] = std::from_chars(from, end, range.first);
-    if (error != std::errc{} || after == end || *after != '-') { return std::nullopt; }
-    std::from_chars(text.data() + slash + 1, end, range.total);  // 0 if the server does not know it
-    return range;
-}
-
-bool Transfer::isTheRest() const {
-    const std::optional<ContentRange> range = contentRange();
-    if (!range || isEncoded() || range->first != kept_bytes_ || header("ETag") != version_.etag) {
-        return false;
-    }
-    return is_sized_ ? range->total == 0 || range->total == expected_bytes_ : range->total > 0;
-}
-
 bool Transfer::beginBody() {
     curl_off_t said = -1;
     curl_easy_getinfo(easy_.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &said);
@@ -289,11 +260,6 @@ bool Transfer::canGoOn() const {
     return file_ != nullptr && file_->sizeBytes() > 0 && is_strong && !isEncoded() && !isNoRest();
 }
 
-bool Transfer::isEncoded() const {
-    const std::string encoding = header("Content-Encoding");
-    return is_unpacked_ && !encoding.empty() && encoding != "identity";
-}
-
 bool Transfer::exceedsCache(std::uint64_t bytes) const {
     return settings_.cache_bytes > 0 && bytes > settings_.cache_bytes;
 }
@@ -301,35 +267,6 @@ bool Transfer::exceedsCache(std::uint64_t bytes) const {
 std::string Transfer::cacheLimit() const {
     return fmt::format("the cache's {} bytes; a larger --cache-limit takes it, and 0, which keeps nothing",
                        settings_.cache_bytes);
-}
-
-long Transfer::status() const {
-    long status = 0;
-    curl_easy_getinfo(easy_.get(), CURLINFO_RESPONSE_CODE, &status);
-    return status;
-}
-
-std::string Transfer::header(const char* name) const {
-    curl_header* found = nullptr;
-    return curl_easy_header(easy_.get(), name, 0, CURLH_HEADER, -1, &found) == CURLHE_OK ? found->value : "";
-}
-
-bool Transfer::saysLength() const {
-    long http = 0;
-    curl_off_t length = -1;
-    curl_easy_getinfo(easy_.get(), CURLINFO_HTTP_VERSION, &http);
-    curl_easy_getinfo(easy_.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
-    return length >= 0 || http >= CURL_HTTP_VERSION_2_0 || !header("Transfer-Encoding").empty();
-}
-
-// Refused if the server does not say where the file ends: a truncated file would be taken for a whole one
-// forever.
-FileVersion Transfer::versionSent() const {
-    if (!saysLength()) { return {}; }
-    FileVersion version{header("ETag"), header("Last-Modified")};
-    if (!isPlain(version.etag)) { version.etag.clear(); }
-    if (!isPlain(version.last_modified)) { version.last_modified.clear(); }
-    return version;
 }
 
 bool Transfer::finish(CURLcode code, bool is_stalled) {

@@ -76,6 +76,8 @@ private:
     [[nodiscard]] std::string header(const char* name) const;
     // True if the answer says how long the body is, or where it ends.
     [[nodiscard]] bool saysLength() const;
+    // Short, of letters that can be printed.
+    static bool isPlain(const std::string& text);
     [[nodiscard]] FileVersion versionSent() const;
     // Empty: another attempt may succeed.
     [[nodiscard]] std::optional<Fetched> judge(CURLcode code, bool is_stalled);
