@@ -1,6 +1,7 @@
 // The results of a bench with head motion.
 #include "app/bench/motion_results.h"
 
+#include "app/bench/motion_statistics.h"
 #include "app/plot/svg_plot.h"
 #include "app/report/text_columns.h"
 
@@ -16,122 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// All frames of one method at one point, in order of time.
-struct Sequence {
-    std::string point, method;
-    std::vector<const MotionFrame*> frames;
-};
-
-std::vector<Sequence> sequencesOf(const MotionRun& run) {
-    std::vector<Sequence> sequences;
-    for (const MotionFrame& frame : run.frames) {
-        const auto found = std::ranges::find_if(
-            sequences, [&](const Sequence& s) { return s.point == frame.point && s.method == frame.method; });
-        Sequence& sequence = found != sequences.end()
-                                 ? *found
-                                 : sequences.emplace_back(Sequence{frame.point, frame.method, {}});
-        sequence.frames.push_back(&frame);
-    }
-    return sequences;
-}
-
-template <typename Value>
-std::vector<double> valuesOf(const std::vector<const MotionFrame*>& frames, Value&& value) {
-    std::vector<double> values;
-    for (const MotionFrame* frame : frames) { values.push_back(std::invoke(value, *frame)); }
-    return values;
-}
-
 double stageMs(const MotionFrame& frame, const std::string& stage) {
     return sumOf(frame.stage_ms, stage).value_or(0.0);
-}
-
-// If there are more frames than this, the errors of the first ones do not count: a method that reuses its
-// history has none, or little, in these.
-constexpr std::size_t kSettling = 10;
-
-// The share of all tiles whose PSNR tells how bad the worst ones are.
-constexpr double kWorstTiles = 0.001;
-
-std::vector<const MotionFrame*> steadyFrames(const Sequence& sequence) {
-    const bool settles = sequence.frames.back()->number >= kSettling;
-    std::vector<const MotionFrame*> frames;
-    for (const MotionFrame* frame : sequence.frames) {
-        if (!settles || frame->number >= kSettling) { frames.push_back(frame); }
-    }
-    return frames;
-}
-
-double runSquare(const Sequence& sequence) {
-    double sum = 0.0, count = 0.0;
-    for (const MotionFrame* frame : steadyFrames(sequence)) {
-        sum += frame->mean_square[0] + frame->mean_square[1];
-        count += 2.0;
-    }
-    return sum / count;
-}
-
-// Of the worse eye.
-std::vector<double> steadySquares(const Sequence& sequence) {
-    return valuesOf(steadyFrames(sequence), &MotionFrame::worseSquare);
-}
-
-// Without the first frame, which has no predecessor.
-std::vector<double> flickerOf(const Sequence& sequence) {
-    std::vector<double> values = valuesOf(sequence.frames, &MotionFrame::worseFlicker);
-    if (!values.empty()) { values.erase(values.begin()); }
-    return values;
-}
-
-// What shows of the errors, over the steady frames: means, the worst frame's bad tiles, and the worst tiles
-// of all.
-struct Visible {
-    double bad = 0.0, worst_bad = 0.0, worst_tiles = 0.0, edge = 0.0, seam = 0.0, rival = 0.0;
-};
-using VisibleOf = std::function<const VisibleErrors*(const MotionFrame&)>;
-Visible visibleOf(const Sequence& sequence, const VisibleOf& errorsOf) {
-    const std::vector<const MotionFrame*> frames = steadyFrames(sequence);
-    const auto count = static_cast<double>(frames.size());
-    Visible all;
-    std::vector<float> squares;
-    for (const MotionFrame* frame : frames) {
-        const VisibleErrors& visible = *errorsOf(*frame);
-        const double bad = visible.badShare();
-        all.bad += bad / count;
-        all.worst_bad = std::max(all.worst_bad, bad);
-        all.edge += visible.edge / count;
-        all.seam += visible.seam / count;
-        all.rival += visible.rival / count;
-        squares.insert(squares.end(), visible.tile_squares.begin(), visible.tile_squares.end());
-    }
-    all.worst_tiles = worstTiles(std::move(squares), kWorstTiles);
-    return all;
-}
-
-Visible visibleOf(const Sequence& sequence) {
-    return visibleOf(sequence, [](const MotionFrame& frame) { return &frame.visible; });
-}
-// Through a headset's lenses.
-std::optional<Visible> seenOf(const Sequence& sequence) {
-    if (!sequence.frames[0]->seen) { return std::nullopt; }
-    return visibleOf(sequence, [](const MotionFrame& frame) { return &*frame.seen; });
-}
-
-// Over the steady frames: of the tiles that were not rendered, the share that is far under the bound, and the
-// worst frame's share.
-struct UnderBound {
-    BoundedTiles tiles;
-    double worst_share = 0.0;
-};
-std::optional<UnderBound> underBoundOf(const Sequence& sequence) {
-    std::optional<UnderBound> all;
-    for (const MotionFrame* frame : steadyFrames(sequence)) {
-        if (!frame->bounded) { continue; }
-        if (!all) { all.emplace(); }
-        all->tiles += *frame->bounded;
-        all->worst_share = std::max(all->worst_share, frame->bounded->underShare());
-    }
-    return all;
 }
 
 bool isLossy(const Sequence& sequence) { return !sequence.frames[0]->exact; }
@@ -153,24 +40,6 @@ Json passesJson(const Sequence& sequence) {
         }));
     }
     return passes;
-}
-
-// Mean squared errors of the pixels that the scene's motion changed, for frames with any.
-std::vector<double> movedSquares(const Sequence& sequence) {
-    std::vector<double> squares;
-    for (const MotionFrame* frame : steadyFrames(sequence)) {
-        if (frame->moved_square) { squares.push_back(*frame->moved_square); }
-    }
-    return squares;
-}
-// Like runSquare(), over all these pixels.
-double movedRunSquare(const Sequence& sequence) {
-    double sum = 0.0, share = 0.0;
-    for (const MotionFrame* frame : steadyFrames(sequence)) {
-        sum += frame->moved_share * frame->moved_square.value_or(0.0);
-        share += frame->moved_share;
-    }
-    return share > 0.0 ? sum / share : 0.0;
 }
 
 // Null if the pictures are equal: JSON has no infinity.
