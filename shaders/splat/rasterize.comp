@@ -71,7 +71,7 @@ float mesh_inverse_depth[kPixels];  // of what cuts through the splats
 float transmittance[kPixels];       // negated once the pixel takes no more light
 bool any_open;
 
-bool isOfSurface() { return kHalfColours && pass.keeps_surface != 0; }
+bool isOfSurface() { return kHalfColours && !kMoments && pass.keeps_surface != 0; }
 float depthSum(uint p, float alpha) { return isOfSurface() ? alpha * depth[p] : depth[p]; }
 
 // The numbers of a batch's splat.
