@@ -16,8 +16,8 @@ packages=(
     dpkg-dev file
 )
 # For continuous integration besides: the check of the format, the library from Python, shells and desktops
-# that completions, entries and file dialogs are for, the encoder of films, what shows man pages, and an X server
-# with a touchpad.
+# that completions, entries and file dialogs are for, the encoder of films, what shows man pages, and an X
+# server with a touchpad.
 [[ ${1:-} != --ci ]] || packages+=(clang-format python3-numpy zsh fish desktop-file-utils appstream shared-mime-info libglib2.0-bin ffmpeg dbus groff-base xserver-xorg-core xserver-xorg-video-dummy)
 # For Windows: the compiler, and what unpacks and compiles Debian's source packages.
 [[ ${1:-} != --windows ]] || packages+=(g++-mingw-w64-x86-64-posix libz-mingw-w64-dev xz-utils patch make python3-jinja2)

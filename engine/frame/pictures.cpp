@@ -76,6 +76,8 @@ std::optional<double> StereoFrame::depthAt(int eye, glm::uvec2 pixel) {
             ? depthOf(readBuffer<gpu::uint>(source.words, sizeof(gpu::uint), at * sizeof(gpu::uint)).at(0),
                       alpha)
             : readBuffer<float>(source.depths, sizeof(float), at * sizeof(float)).at(0);
+    // An alpha of just under a half may be stored as a half: the surface is none.
+    if (!(depth > 0.0f)) { return std::nullopt; }
     return static_cast<double>(depth) / static_cast<double>(alpha);
 }
 
